@@ -1,0 +1,199 @@
+// The laboratory: protocols and the virtual testing machine, reduction of curves to properties,
+// fitting of curves to a tissue.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sinew/tissue.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+//---- virtual testing machine ---------------------------------------------------------------------
+
+typedef enum sn_protocol_kind {
+    SN_PROTOCOL_TENSILE,
+    SN_PROTOCOL_CYCLIC,
+    SN_PROTOCOL_RELAXATION
+} sn_protocol_kind;
+
+/// What the machine does. Fill from sn_protocol_default().
+typedef struct sn_protocol {
+    sn_protocol_kind kind;
+    double stretch; ///< target stretch [1]
+    double ramp;    ///< seconds from 1 to the target; 0: from rate
+    double rate;    ///< stretch per second; used where ramp is 0
+    double hold;    ///< seconds at the target (relaxation)
+    int cycles;     ///< triangles 1 -> target -> 1 (cyclic)
+    int points;     ///< rows of the curve
+} sn_protocol;
+
+SN_API int sn_protocol_count(void);
+SN_API const char *sn_protocol_name(sn_protocol_kind kind);
+/// @return false with a text stored when there is no protocol of that name.
+SN_API bool sn_protocol_find(const char *name, sn_protocol_kind *kind);
+/// The parameters of a protocol with units and defaults (options of the command).
+SN_API const sn_param *sn_protocol_params(sn_protocol_kind kind, int *count);
+SN_API sn_protocol sn_protocol_default(sn_protocol_kind kind);
+/// The stretch over time, and the times at which the machine records (in *time, sn_alloc'd,
+/// protocol->points of them; relaxation spaces them by the logarithm after the ramp).
+SN_API sn_status sn_protocol_history(const sn_protocol *protocol, sn_history **stretch,
+                                     double **time);
+
+/// Uniaxial test of a tissue with free sides: nominal stress at n times under a stretch history
+/// that starts at t = history->time[0] from rest. A stretch of other than 1 at the start is a step.
+/// Solid laws solve their lateral stretch (incompressible or not); memory acts as in tissue.h. A
+/// uniaxial law uses T (nominal) with the hereditary integral on T (equation 33 in one dimension).
+/// Accurate to 1e-7 of the peak: steps are halved until that holds.
+/// @param stress  nominal stress, Pa                                        (n)
+/// @return SN_OK, SN_E_UNSUPPORTED (membrane law), SN_E_RANGE, SN_E_SOLVER, SN_E_MEMORY.
+SN_API sn_status sn_lab_uniaxial(const sn_tissue *tissue, const sn_history *stretch, int n,
+                                 const double *time, double *stress);
+/// Runs a protocol: a record with time [s], stretch [1], stress [Pa], and cycle [1] for cyclic.
+SN_API sn_status sn_lab_test(const sn_tissue *tissue, const sn_protocol *protocol,
+                             sn_record **record);
+
+//---- reduction -----------------------------------------------------------------------------------
+
+/// A curve brought to time, stretch and nominal stress from whatever columns it has (force over
+/// area, extension over gauge_length, strain, true stress, …). Arrays owned.
+typedef struct sn_curve {
+    char name[SN_TEXT_MAX];
+    int count;
+    double *time;                  ///< seconds; NULL where the curve has none
+    double *stretch;               ///< [1]
+    double *stress;                ///< nominal, Pa
+    int discarded;                 ///< rows left out, why in `remarks`
+    char remarks[SN_TEXT_MAX * 2]; ///< what was done to the data, in words
+} sn_curve;
+
+/// @return SN_OK, SN_E_DATA (a column or a quantity is missing, times go backwards, too few rows).
+SN_API sn_status sn_curve_from_record(const sn_record *record, sn_curve *curve);
+SN_API void sn_curve_release(sn_curve *curve);
+
+/// Value or NAN with a reason.
+typedef struct sn_tensile {
+    double youngs_modulus;
+    char modulus_method[SN_TEXT_MAX];
+    double toe_modulus;       ///< slope over the first tenth of the strain
+    double max_slope_modulus; ///< slope of the steepest tenth of the strain before the ultimate
+    double yield_stress, yield_strain; ///< 0.2 % offset; NAN where the line never meets the curve
+    char reason[SN_TEXT_MAX];          ///< why there is no yield
+    double ultimate_tensile_strength, strain_at_ultimate;
+    double work_to_failure;        ///< J/m3
+    double B, C, slope_r_squared;  ///< slope against stress (equation 13)
+    int window_first, window_last; ///< rows of the modulus
+} sn_tensile;
+/// Young's modulus, 0.2 % offset yield, strength, work to failure and slope against stress of a
+/// curve pulled until it fails (or ends). Strain is stretch - 1, stress nominal.
+/// @return SN_OK, SN_E_DATA (constant stretch, fewer than 5 rows up to the largest stress).
+SN_API sn_status sn_reduce_tensile(const sn_curve *curve, sn_tensile *out);
+
+/// One triangle: rows of its start, its largest stretch and its end.
+typedef struct sn_cycle {
+    int first, peak, last;          ///< rows
+    double hysteresis;              ///< loop area over area under the loading curve
+    double loading_area, loop_area; ///< J/m3
+    double peak_stress;
+} sn_cycle;
+typedef struct sn_cycles {
+    int count;
+    sn_cycle *cycle; ///< owned
+    char remarks[SN_TEXT_MAX]; ///< rows left out and why; empty where all were used
+} sn_cycles;
+/// Splits a curve at the turns of its stretch (turns smaller than 5 % of the range are noise) and
+/// gives the hysteresis of every cycle; a last cycle that is not finished is left out.
+/// @return SN_OK, SN_E_DATA (constant stretch, no full cycle), SN_E_MEMORY.
+SN_API sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out);
+SN_API void sn_cycles_release(sn_cycles *cycles);
+
+typedef struct sn_relaxation_result {
+    double ramp_s; ///< end of the ramp, found in the data, from its start
+    double peak_stress;
+    double final_stress;
+    double relaxed_fraction; ///< (peak - final)/peak
+    double rate_per_decade;  ///< fall of stress over peak per decade of time after the peak
+} sn_relaxation_result;
+/// Properties of a ramp and hold. The ramp ends at the first row within 1 % of the plateau.
+/// @return SN_OK, SN_E_DATA (no time, constant stretch, no hold of at least 3 rows).
+SN_API sn_status sn_reduce_relaxation(const sn_curve *curve, sn_relaxation_result *out);
+
+//---- fitting -------------------------------------------------------------------------------------
+
+#define SN_FIT_PARAMS_MAX 32
+#define SN_FIT_CURVES_MAX 32
+
+/// What to fit. Fill from sn_fit_def_default().
+typedef struct sn_fit_def {
+    int curve_count;
+    const sn_curve *curve; ///< with time                          (curve_count), borrowed
+    const double *weight;  ///< Nullable: factor of a curve's squares (curve_count), borrowed
+    const sn_law *law;
+    const sn_memory_law *memory; ///< Nullable: none
+    int terms;                   ///< exponentials of a prony memory
+    int law_terms;               ///< terms of an elastic law with lists (ogden)
+    int starts;                  ///< local searches from the best of the global stage
+    unsigned seed;
+    int fixed_count; ///< parameters held at a value
+    const char *fixed_name[SN_FIT_PARAMS_MAX];
+    double fixed_value[SN_FIT_PARAMS_MAX];
+    void (*progress)(void *context, double done, const char *text); ///< Nullable
+    void *progress_context;
+} sn_fit_def;
+SN_API sn_fit_def sn_fit_def_default(void);
+
+/// One constant of a fit. Terms of a list are named g1, g2, …
+typedef struct sn_fit_param {
+    char name[SN_NAME_MAX];
+    char unit[SN_NAME_MAX];
+    double value, standard_error; ///< NAN error for a fixed parameter
+    /// 95 % interval, NAN for a fixed parameter: linearised where it is narrow, from the likelihood
+    /// profile where it is wide; an end that meets the bounds of the search is open there.
+    double ci95[2];
+    bool profiled; ///< ci95 is from the profile
+    bool fixed, at_bound;
+    bool identifiable;
+    char reason[SN_TEXT_MAX]; ///< why not
+} sn_fit_param;
+
+typedef struct sn_fit_curve {
+    int count;
+    double *predicted; ///< nominal stress, Pa, owned               (count)
+    double rmse;       ///< Pa
+    double peak;       ///< largest |measured stress|, Pa
+    double r_squared;
+    int worst; ///< row of the largest residual
+} sn_fit_curve;
+
+/// A fit: all stresses are residuals in Pa, R2 = 1 - SSE/SST over all points of all curves.
+typedef struct sn_fit_result {
+    sn_tissue tissue;
+    int param_count;
+    sn_fit_param param[SN_FIT_PARAMS_MAX];
+    double correlation[SN_FIT_PARAMS_MAX * SN_FIT_PARAMS_MAX]; ///< (param_count x param_count)
+    double condition; ///< condition number of J^T J with its columns scaled to 1
+    char weakest[SN_TEXT_MAX]; ///< the combination of constants that the data know least
+    bool identifiable; ///< every constant is
+    bool converged;
+    char reason[SN_TEXT_MAX]; ///< of the end of the search
+    int points;
+    double r_squared, rmse, nrmse, aicc; ///< nrmse: rmse over the largest measured stress
+    int curve_count;
+    sn_fit_curve curve[SN_FIT_CURVES_MAX];
+    int evaluations;
+} sn_fit_result;
+
+/// Fits law and memory together, through the recorded stretch history of every curve. A bulk modulus
+/// is no parameter of a uniaxial fit: it is infinite unless fixed. Same input, same bits.
+/// @return SN_OK, SN_E_DATA (no time, fewer points than parameters, constant stretch),
+/// SN_E_UNSUPPORTED (a law and a test that do not go together), SN_E_NAME (fixed name), SN_E_RANGE
+/// (fixed value), SN_E_DEFINITION (no curve, no law, too many parameters), SN_E_MEMORY.
+SN_API sn_status sn_fit(const sn_fit_def *def, sn_fit_result *result);
+SN_API void sn_fit_release(sn_fit_result *result);
+/// Stress that a tissue predicts for the recorded history of a curve.
+SN_API sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve,
+                                sn_fit_curve *prediction);
+
+#ifdef __cplusplus
+}
+#endif

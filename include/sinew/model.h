@@ -1,0 +1,283 @@
+// A case without a solver: mesh, regions, surfaces, fibres, supports, loads, tools, time programme.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sinew/tissue.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+//---- mesh ---------------------------------------------------------------------------------------
+
+/// A named set of boundary triangles, outward normals by the right-hand rule.
+typedef struct sn_surface {
+    char name[SN_NAME_MAX];
+    int face_count;
+    int *face; ///< nodes of each triangle                     (face_count x 3)
+    int *cell; ///< the tetrahedron behind each triangle       (face_count)
+} sn_surface;
+
+/// A mesh of linear tetrahedra, metres. Arrays come from sn_alloc(); sn_mesh_destroy() frees them.
+typedef struct sn_mesh {
+    int node_count;
+    double *node; ///< rest positions                          (node_count x 3)
+    int cell_count;
+    int *cell;   ///< nodes, positive volume                   (cell_count x 4)
+    int *region; ///< region of each cell                      (cell_count)
+    int region_count;
+    char (*region_name)[SN_NAME_MAX]; ///<                     (region_count)
+    int surface_count;
+    sn_surface *surface; ///<                                  (surface_count)
+} sn_mesh;
+
+/// How a block of rectangular cells is cut into tetrahedra.
+typedef enum sn_pattern {
+    SN_PATTERN_MIRRORED, ///< six Kuhn tetrahedra a cell, neighbouring cells reflect each other
+    SN_PATTERN_BCC,      ///< body-centred lattice
+    SN_PATTERN_KUHN      ///< six Kuhn tetrahedra, one cut repeated
+} sn_pattern;
+
+/// What the built-in shapes take.
+typedef enum sn_shape { SN_SHAPE_BLOCK, SN_SHAPE_CYLINDER, SN_SHAPE_TUBE } sn_shape;
+typedef struct sn_shape_def {
+    sn_shape shape;
+    sn_pattern pattern;
+    double size[3];                    ///< block: edge lengths, m
+    double radius;                     ///< cylinder, m
+    double inner_radius, outer_radius; ///< tube, m
+    double length;                     ///< cylinder and tube, m, along z from 0
+    int cells[3]; ///< block: along x y z; cylinder and tube: radial, around, along
+} sn_shape_def;
+
+/// Most tetrahedra a mesh may have (32-bit indices, and memory).
+#define SN_CELLS_MAX 50000000
+
+/// Builds a built-in shape with its surfaces: block left right front back bottom top
+/// (-x +x -y +y -z +z) from the origin; tube inner outer bottom top; cylinder outer bottom top; all
+/// with "boundary" as the last. One region, "body". Tube and cylinder have a node on the x axis of
+/// every ring. Cylinder: rings of 6, 12, 18, … points until `around` is reached (of evenly growing
+/// counts where around > 6 radial); it has no bcc pattern.
+/// @return SN_OK, SN_E_RANGE (sizes, counts, more than SN_CELLS_MAX), SN_E_UNSUPPORTED, SN_E_MESH
+/// (cells too thin), SN_E_MEMORY.
+SN_API sn_status sn_mesh_build(const sn_shape_def *def, sn_mesh **mesh);
+/// A mesh of zeros with room for so many things (surfaces still without faces): for readers.
+SN_API sn_status sn_mesh_create(int node_count, int cell_count, int region_count,
+                                int surface_count, sn_mesh **mesh);
+SN_API void sn_mesh_destroy(sn_mesh *mesh); // NULL is allowed
+/// Checks indices, finite coordinates, unused nodes, flat cells; turns inverted cells round; finds
+/// the cell behind every surface face and orients the face outwards. Adds the surface "boundary"
+/// (all outer faces). Readers call it last. A face inside the body keeps its direction and gets the
+/// cell for which that is outwards. `cell` of a surface may be NULL before.
+/// @return SN_OK, SN_E_MESH, SN_E_MEMORY.
+SN_API sn_status sn_mesh_finish(sn_mesh *mesh);
+/// Splits every tetrahedron into eight, keeping regions and surfaces. @return SN_OK, SN_E_MEMORY,
+/// SN_E_RANGE (more than SN_CELLS_MAX).
+SN_API sn_status sn_mesh_refine(const sn_mesh *mesh, sn_mesh **fine);
+/// An equal mesh. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_mesh_copy(const sn_mesh *mesh, sn_mesh **copy);
+/// Index of a surface by name; -1 with a text (and a suggestion) stored when there is none.
+SN_API int sn_mesh_surface(const sn_mesh *mesh, const char *name);
+/// Nodes of a surface, each once, rising. *nodes is sn_alloc'd for the caller.
+SN_API sn_status sn_mesh_surface_nodes(const sn_mesh *mesh, int surface, int **nodes, int *count);
+/// Unique edges, ends rising, sorted. *edges (count x 2) is sn_alloc'd for the caller.
+SN_API sn_status sn_mesh_edges(const sn_mesh *mesh, int **edges, int *count);
+SN_API double sn_mesh_volume(const sn_mesh *mesh);
+
+//---- supports, loads, tools, probes --------------------------------------------------------------
+
+typedef struct sn_support {
+    int surface;
+    bool fix[3];
+} sn_support;
+
+typedef enum sn_load_kind {
+    SN_LOAD_DISPLACEMENT, ///< prescribed motion of the nodes of a surface
+    SN_LOAD_TRACTION,     ///< force over original area, fixed direction
+    SN_LOAD_PRESSURE      ///< follower pressure on the deformed surface, positive pushes inwards
+} sn_load_kind;
+
+typedef struct sn_load {
+    sn_load_kind kind;
+    int surface;
+    double vector[3];   ///< displacement [m] or traction [Pa]
+    bool free[3];       ///< displacement: this component is not prescribed
+    double pressure;    ///< Pa
+    sn_history *factor; ///< Nullable (constant 1), owned; one channel
+} sn_load;
+
+typedef enum sn_tool_kind { SN_TOOL_SPHERE } sn_tool_kind;
+
+/// A rigid body that moves as told and pushes the tissue.
+typedef struct sn_tool {
+    char name[SN_NAME_MAX];
+    sn_tool_kind kind;
+    double radius;    ///< m
+    double at[3];     ///< centre at rest, m
+    sn_history *path; ///< Nullable, owned; displacement of the centre, three channels, m
+    double friction;  ///< Coulomb coefficient
+} sn_tool;
+
+typedef enum sn_probe_kind { SN_PROBE_POINT, SN_PROBE_REACTION } sn_probe_kind;
+typedef struct sn_probe {
+    char name[SN_NAME_MAX];
+    sn_probe_kind kind;
+    double point[3]; ///< material point, m
+    int surface;     ///< reaction: force that the support or prescribed motion exerts on the body
+} sn_probe;
+
+//---- settings of the engines ---------------------------------------------------------------------
+
+typedef enum sn_rung { SN_RUNG_CENTRAL, SN_RUNG_COUPLED, SN_RUNG_SMOOTHED } sn_rung;
+typedef enum sn_integrator {
+    SN_INTEGRATOR_EXPLICIT,
+    SN_INTEGRATOR_IMPLICIT,
+    SN_INTEGRATOR_QUASI_STATIC
+} sn_integrator;
+typedef enum sn_precision { SN_SINGLE, SN_DOUBLE } sn_precision;
+
+typedef struct sn_springs_def {
+    sn_rung rung;
+    bool volume; ///< nodal volume energy
+    sn_integrator integrator;
+    double step; ///< seconds; 0 chooses: explicit from the highest frequency, quasi-static from
+                 ///< output_every
+    sn_precision precision;
+    int threads;
+    double damping;          ///< mass-proportional Rayleigh coefficient, 1/s, on motion relative to
+                             ///< the rigid motion of the body
+    double memory_tolerance; ///< largest error of the exponentials, of G(0)
+} sn_springs_def;
+
+typedef enum sn_element { SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1 } sn_element;
+typedef enum sn_analysis { SN_ANALYSIS_QUASI_STATIC, SN_ANALYSIS_DYNAMIC } sn_analysis;
+
+typedef struct sn_continuum_def {
+    sn_element element;
+    sn_analysis analysis;
+    int steps;               ///< least number of steps over the case; cut back where needed
+    double tolerance;        ///< relative residual at which Newton stops
+    double memory_tolerance; ///< largest error of the exponentials, of G(0)
+} sn_continuum_def;
+
+SN_API sn_springs_def sn_springs_def_default(void);
+SN_API sn_continuum_def sn_continuum_def_default(void);
+
+//---- case ----------------------------------------------------------------------------------------
+
+/// Everything a solver needs to know. Owns all it points to.
+typedef struct sn_case {
+    char name[SN_TEXT_MAX];
+    sn_mesh *mesh;
+    sn_shape_def shape; ///< how the mesh was built, where has_shape
+    bool has_shape;
+    sn_tissue *tissue; ///<                                    (mesh->region_count)
+    double fibre[3];   ///< direction in every cell, unit length; zero where none is given
+    double gravity[3]; ///< m/s2
+    int support_count, load_count, tool_count, probe_count;
+    sn_support *support;
+    sn_load *load;
+    sn_tool *tool;
+    sn_probe *probe;
+    double until;        ///< seconds
+    double output_every; ///< seconds
+    sn_springs_def springs;
+    sn_continuum_def continuum;
+} sn_case;
+
+/// An empty case with default settings.
+SN_API sn_status sn_case_create(sn_case **c);
+SN_API void sn_case_destroy(sn_case *c); // NULL is allowed
+/// The same case on another mesh with the same surfaces and regions (by index). Takes the mesh
+/// unless it fails. Everything else is copied, so both may be destroyed; has_shape stays where the
+/// mesh has as many nodes and cells as before, else it is cleared.
+/// @return SN_OK, SN_E_DEFINITION (regions or surfaces differ), SN_E_MEMORY.
+SN_API sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy);
+/// Checks what no reader of one key can see: tissues in range and fit for three dimensions, a fibre
+/// where a law needs one, probes inside the body, loads and supports that contradict each other,
+/// tools that start inside, times. @return SN_OK, SN_E_DEFINITION, SN_E_RANGE.
+SN_API sn_status sn_case_check(const sn_case *c);
+
+/// What is prescribed at each node at time t, from supports and displacement loads. Where both hold
+/// a node in one direction they must say the same; sn_case_check() refuses what contradicts.
+/// @param fixed  one bit a direction (1 x, 2 y, 4 z)          (node_count)
+/// @param value  displacement of fixed directions, m          (node_count x 3), others untouched
+SN_API void sn_case_prescribed(const sn_case *c, double t, unsigned char *fixed, double *value);
+/// Which rigid motions the supports and prescribed motions leave free, as text for a message, such
+/// as "translation along z, rotation about x"; empty when none.
+SN_API void sn_case_free_motions(const sn_case *c, char text[SN_TEXT_MAX]);
+/// Names of the history columns of the case in the order engines fill them: time, then for a point
+/// probe NAME_ux NAME_uy NAME_uz [m], for a reaction or a tool NAME_fx NAME_fy NAME_fz [N].
+SN_API sn_status sn_case_history_columns(const sn_case *c, sn_record *history);
+/// Material axes: rotation whose first row is the fibre (identity where there is none); the second
+/// is the coordinate axis that follows the fibre's largest component, made orthogonal.
+SN_API void sn_case_axes(const sn_case *c, double axes[9]);
+/// Where a material point is: cell and barycentric weights. Points up to 1e-6 of the body's size
+/// outside are taken to the nearest cell. @return SN_OK, SN_E_DEFINITION (outside).
+SN_API sn_status sn_mesh_locate(const sn_mesh *mesh, const double point[3], int *cell,
+                                double weight[4]);
+
+//---- contact with tools --------------------------------------------------------------------------
+
+/// Memory of one contact point: where it sticks, relative to the tool's centre.
+typedef struct sn_contact {
+    bool touching;
+    double anchor[3];
+} sn_contact;
+
+/// Centre of a tool at time t.
+SN_API void sn_tool_centre(const sn_tool *tool, double t, double centre[3]);
+/// Penalty contact of a surface point with a tool: normal force stiffness * depth outwards, and
+/// Coulomb friction by an elastic stick and a slip (return mapping). Both engines use it.
+/// @param stiffness  N/m: penalty per area times the area of the point
+/// @param before     memory at the start of the step; *after gets the memory at its end
+/// @param force      on the tissue, N
+/// @param tangent    -d force/d position, row-major 3 x 3, symmetric part of the friction term
+/// kept;
+///                   Nullable
+/// @return true when the point touches.
+SN_API bool sn_tool_contact(const sn_tool *tool, const double centre[3], const double position[3],
+                            double stiffness, const sn_contact *before, sn_contact *after,
+                            double force[3], double tangent[9]);
+/// Penalty per area, Pa/m, that both engines use for a case: keeps the depth small against the
+/// cells without ruling the explicit step: 2 (K' + 4/3 shear) / h, K' = min(bulk, 20 shear), h the
+/// mean edge of the boundary faces.
+SN_API double sn_case_penalty(const sn_case *c);
+
+//---- runs ----------------------------------------------------------------------------------------
+
+/// What a run hands out while it goes on.
+typedef struct sn_output {
+    void *context;
+    /// Nullable: called at time 0 and then every output_every; an error stops the run.
+    sn_status (*frame)(void *context, const sn_frame *frame);
+    /// Nullable: called now and then; done in 0 … 1.
+    void (*progress)(void *context, double done, const char *text);
+} sn_output;
+
+/// Numbers of a run, for summary.json.
+typedef struct sn_run_summary {
+    char engine[SN_NAME_MAX]; ///< "springs" or "continuum"
+    char model[SN_NAME_MAX];  ///< "coupled+volume", "P2P1", …
+    int nodes, cells, springs;
+    int unknowns;
+    double step_s; ///< smallest step used
+    long steps;
+    double simulated_s, wall_s;
+    double real_time_factor;                                  ///< simulated_s / wall_s
+    double step_wall_p50_s, step_wall_p99_s, step_wall_max_s; ///< wall time of one step
+    double kinetic_J, elastic_J, dissipated_J, external_work_J;
+    double energy_residual; ///< relative to the largest of the terms
+    int memory_terms;
+    double memory_error;     ///< stated error of the exponentials, of G(0)
+    double memory_band_s[2]; ///< over this band
+    int threads;
+    int newton_iterations, cutbacks; ///< 0 for explicit runs
+    bool converged;
+    char reason[SN_TEXT_MAX]; ///< why it stopped early, with numbers; empty when it did not
+    char note[SN_TEXT_MAX];   ///< what a reader of the result must know; may be empty
+} sn_run_summary;
+
+#ifdef __cplusplus
+}
+#endif

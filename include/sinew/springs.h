@@ -1,0 +1,78 @@
+// The real-time engine: nonlinear springs with memory on the edges or cells of a mesh.
+// SPDX-License-Identifier: Apache-2.0
+//
+// A net is constant: build it once, share it. A state is all that changes. A step reads the net and
+// the inputs of the state, and writes the state; it allocates nothing and opens nothing.
+#pragma once
+
+#include "sinew/model.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// A spring net: constant description.
+typedef struct sn_net sn_net;
+/// Positions, velocities, memory variables and results of one simulation of a net.
+typedef struct sn_state sn_state;
+
+/// Builds the net of a case: rung, volume term, integrator, precision and step from c->springs.
+/// The case is not referred to afterwards.
+/// @return SN_OK, SN_E_UNSUPPORTED (a law that the rung cannot carry), SN_E_DEFINITION,
+/// SN_E_MEMORY.
+SN_API sn_status sn_net_create(const sn_case *c, sn_net **net);
+SN_API void sn_net_destroy(sn_net *net); // NULL is allowed
+SN_API int sn_net_node_count(const sn_net *net);
+SN_API int sn_net_spring_count(const sn_net *net);
+SN_API int sn_net_cell_count(const sn_net *net);
+/// The exponentials in use, of the tissue of region 0.
+SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
+/// The explicit step, seconds: 0.9 of the stability limit at rest, or the case's own.
+SN_API double sn_net_step(const sn_net *net);
+
+SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
+SN_API void sn_state_destroy(sn_state *state); // NULL is allowed
+/// Back to rest.
+SN_API void sn_state_reset(const sn_net *net, sn_state *state);
+/// Overrides the path of a tool: its centre from the next step on, metres.
+SN_API void sn_state_set_tool(const sn_net *net, sn_state *state, int tool, const double centre[3]);
+
+/// What a step did.
+typedef struct sn_step_info {
+    double time;  ///< seconds, after the step
+    double step;  ///< seconds taken; less than asked where stability needs it
+    int warnings; ///< counted so far: steps cut, states recovered
+} sn_step_info;
+
+/// Advances by at most dt seconds, one explicit step. Never allocates.
+SN_API sn_step_info sn_state_step(const sn_net *net, sn_state *state, double dt);
+/// Positions now, metres (node_count x 3), copied to the caller's array.
+SN_API void sn_state_positions(const sn_net *net, const sn_state *state, double *position);
+/// Force of the tissue on a tool, newtons.
+SN_API void sn_state_tool_force(const sn_net *net, const sn_state *state, int tool,
+                                double force[3]);
+
+/// Runs a case to its end. Fields as in sn_continuum_run(), velocity [m/s] in addition.
+/// @return SN_OK also where the run stopped early (summary->converged false, summary->reason).
+SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
+                                sn_record *history);
+
+/// One row of the benchmark of the force kernels.
+typedef struct sn_springs_bench_row {
+    char model[SN_NAME_MAX];
+    bool volume;
+    int memory_terms, nodes, springs, cells, threads;
+    sn_precision precision;
+    double springs_per_second; ///< 0 for rungs without springs
+    double cells_per_second;   ///< 0 for the central rung without volume
+    double bound_per_second;   ///< what measured bandwidth allows for the bytes one item moves
+} sn_springs_bench_row;
+
+/// Times steps of a block of `cells`^3 mirrored cells (E = 10 kPa, density 1000 kg/m3, exponential
+/// law for central, demiray for coupled).
+SN_API sn_status sn_springs_bench(sn_rung rung, bool volume, int memory_terms, int cells,
+                                  sn_precision precision, sn_springs_bench_row *row);
+
+#ifdef __cplusplus
+}
+#endif
