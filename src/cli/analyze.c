@@ -1,0 +1,249 @@
+// sinew analyze: a measured curve to properties.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+
+typedef struct analysis {
+    const char *test;
+    json_t *json;
+    sn_report *report; ///< NULL without --out
+    bool quiet;        ///< nothing on standard output but JSON
+} analysis;
+
+static void say(const analysis *a, const char *what, const char *value, const char *remark) {
+    if (!a->quiet) printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
+}
+
+static void stress_plot(sn_report *report, const sn_curve *curve, const char *title, int lines,
+                        const sn_line *line) {
+    (void)curve;
+    sn_report_plot(report, &(sn_plot){.title = title,
+                                      .x_label = "stretch [1]",
+                                      .y_label = "nominal stress [Pa]",
+                                      .line_count = lines,
+                                      .line = line});
+}
+
+//---- tensile -------------------------------------------------------------------------------------
+
+static json_t *tensile_json(const sn_tensile *r) {
+    return json_pack(
+        "{s:o, s:s, s:o, s:o, s:o, s:s*, s:o, s:o, s:o, s:{s:o, s:o, s:o}}", "youngs_modulus_Pa",
+        cli_number(r->youngs_modulus), "modulus_method", r->modulus_method, "toe_modulus_Pa",
+        cli_number(r->toe_modulus), "yield_stress_Pa", cli_number(r->yield_stress), "yield_strain",
+        cli_number(r->yield_strain), "reason", *r->reason ? r->reason : NULL,
+        "ultimate_tensile_strength_Pa", cli_number(r->ultimate_tensile_strength),
+        "strain_at_ultimate", cli_number(r->strain_at_ultimate), "work_to_failure_J_per_m3",
+        cli_number(r->work_to_failure), "slope_stress", "B", cli_number(r->B), "C_Pa",
+        cli_number(r->C), "r_squared", cli_number(r->slope_r_squared));
+}
+
+static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
+    sn_tensile r;
+    SN_TRY(sn_reduce_tensile(curve, &r));
+    a->json = tensile_json(&r);
+    say(a, "Young's modulus", cli_show(r.youngs_modulus, "Pa"), r.modulus_method);
+    say(a, "toe modulus", cli_show(r.toe_modulus, "Pa"), "");
+    say(a, "yield stress, 0.2 % offset", cli_show(r.yield_stress, "Pa"), r.reason);
+    say(a, "ultimate tensile strength", cli_show(r.ultimate_tensile_strength, "Pa"), "");
+    say(a, "strain at ultimate", cli_show(r.strain_at_ultimate, "1"), "");
+    char work[64];
+    snprintf(work, sizeof work, "%.4g J/m3", r.work_to_failure);
+    say(a, "work to failure", work, "");
+    char slope[128];
+    snprintf(slope, sizeof slope, "B = %.4g, C = %s", r.B, cli_show(r.C, "Pa"));
+    char squared[64];
+    snprintf(squared, sizeof squared, "R2 of the line %.4f", r.slope_r_squared);
+    say(a, "slope against stress (13)", slope, squared);
+    if (!a->report) return SN_OK;
+    const char *cells[] = {"property",
+                           "value",
+                           "Young's modulus",
+                           cli_show(r.youngs_modulus, "Pa"),
+                           "toe modulus",
+                           cli_show(r.toe_modulus, "Pa"),
+                           "yield stress",
+                           cli_show(r.yield_stress, "Pa"),
+                           "ultimate tensile strength",
+                           cli_show(r.ultimate_tensile_strength, "Pa"),
+                           "work to failure",
+                           work,
+                           "slope against stress (13)",
+                           slope};
+    sn_report_table(a->report, 7, 2, cells, r.modulus_method);
+    if (*r.reason) sn_report_text(a->report, "No yield stress: %s", r.reason);
+    int n = r.window_last - r.window_first + 1;
+    sn_line lines[] = {{"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
+                       {"window of the modulus", SN_LINE, 1, n, curve->stretch + r.window_first,
+                        curve->stress + r.window_first}};
+    stress_plot(a->report, curve, "Stress against stretch", 2, lines);
+    return SN_OK;
+}
+
+//---- cyclic --------------------------------------------------------------------------------------
+
+static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
+    sn_cycles r;
+    SN_TRY(sn_reduce_cyclic(curve, &r));
+    json_t *cycles = json_array();
+    for (int i = 0; i < r.count; i++) {
+        const sn_cycle *c = &r.cycle[i];
+        json_array_append_new(cycles, json_pack("{s:o, s:o, s:o, s:o}", "hysteresis",
+                                                cli_number(c->hysteresis), "loading_area_J_per_m3",
+                                                cli_number(c->loading_area), "loop_area_J_per_m3",
+                                                cli_number(c->loop_area), "peak_stress_Pa",
+                                                cli_number(c->peak_stress)));
+        char what[32], value[160];
+        snprintf(what, sizeof what, "cycle %d", i + 1);
+        snprintf(value, sizeof value, "hysteresis %.4f, peak %s", c->hysteresis,
+                 cli_show(c->peak_stress, "Pa"));
+        say(a, what, value, "");
+    }
+    a->json = json_pack("{s:o, s:s}", "cycles", cycles, "definition",
+                        "hysteresis = loop area / area under the loading curve, nominal stress");
+    if (a->report) {
+        sn_line line = {"measured", SN_LINE, 0, curve->count, curve->stretch, curve->stress};
+        stress_plot(a->report, curve, "Cycles", 1, &line);
+        for (int i = 0; i < r.count; i++)
+            sn_report_text(a->report,
+                           "Cycle %d: hysteresis %.4f (loop area %.4g J/m3 over loading area "
+                           "%.4g J/m3), peak stress %s.",
+                           i + 1, r.cycle[i].hysteresis, r.cycle[i].loop_area,
+                           r.cycle[i].loading_area, cli_show(r.cycle[i].peak_stress, "Pa"));
+    }
+    sn_cycles_release(&r);
+    return SN_OK;
+}
+
+//---- relaxation ----------------------------------------------------------------------------------
+
+static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
+    sn_relaxation_result r;
+    SN_TRY(sn_reduce_relaxation(curve, &r));
+    a->json = json_pack("{s:o, s:o, s:o, s:o, s:o}", "peak_stress_Pa", cli_number(r.peak_stress),
+                        "relaxed_fraction", cli_number(r.relaxed_fraction), "rate_per_decade",
+                        cli_number(r.rate_per_decade), "ramp_s", cli_number(r.ramp_s),
+                        "final_stress_Pa", cli_number(r.final_stress));
+    say(a, "ramp", cli_show(r.ramp_s, "s"), "");
+    say(a, "peak stress", cli_show(r.peak_stress, "Pa"), "");
+    say(a, "final stress", cli_show(r.final_stress, "Pa"), "");
+    char percent[32];
+    snprintf(percent, sizeof percent, "%.1f %%", 100 * r.relaxed_fraction);
+    say(a, "relaxed fraction", percent, "of the peak");
+    snprintf(percent, sizeof percent, "%.1f %%", 100 * r.rate_per_decade);
+    say(a, "relaxation per decade of time", percent, "of the peak");
+    if (!a->report) return SN_OK;
+    const char *cells[] = {"property",
+                           "value",
+                           "ramp",
+                           cli_show(r.ramp_s, "s"),
+                           "peak stress",
+                           cli_show(r.peak_stress, "Pa"),
+                           "final stress",
+                           cli_show(r.final_stress, "Pa"),
+                           "relaxation per decade (of the peak)",
+                           percent};
+    sn_report_table(a->report, 5, 2, cells, "Relaxation");
+    sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stress};
+    sn_report_plot(a->report, &(sn_plot){.title = "Stress over time",
+                                         .x_label = "time [s]",
+                                         .y_label = "nominal stress [Pa]",
+                                         .log_x = true,
+                                         .line_count = 1,
+                                         .line = &line});
+    stress_plot(
+        a->report, curve, "Stress against stretch", 1,
+        &(sn_line){"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress});
+    return SN_OK;
+}
+
+//---- the command ---------------------------------------------------------------------------------
+
+typedef struct test_method {
+    const char *name;
+    sn_status (*analyze)(const sn_curve *curve, analysis *a);
+    bool needs_time;
+} test_method;
+
+static const test_method methods[] = {
+    {"tensile", analyze_tensile, false},
+    {"cyclic", analyze_cyclic, false},
+    {"relaxation", analyze_relaxation, true},
+};
+
+#define METHODS ((int)(sizeof methods / sizeof methods[0]))
+
+static sn_status write_results(const char *folder, analysis *a) {
+    char path[4096];
+    SN_TRY(sn_folder_make(folder));
+    SN_TRY(cli_write_json(folder, "analysis.json", a->json));
+    return sn_report_write(a->report, cli_path(path, sizeof path, folder, "report.html"));
+}
+
+static sn_status analyze(const char *path, const test_method *method, const char *folder,
+                         analysis *a) {
+    sn_record *record = NULL;
+    sn_curve curve = {0};
+    sn_status status;
+    SN_TRY_GOTO(status, sn_curve_read(path, &record));
+    status = sn_curve_from_record(record, &curve);
+    if (status == SN_OK && method->needs_time && !curve.time)
+        status = sn_fail(SN_E_DATA, "column \"time\" is missing: a %s test needs it", method->name);
+    if (status == SN_OK && folder) {
+        char title[SN_TEXT_MAX];
+        snprintf(title, sizeof title, "%s: %s test", cli_basename(path), method->name);
+        status = sn_report_create(title, &a->report);
+    }
+    if (status == SN_OK) {
+        if (!a->quiet) printf("%s: %s test, %d rows\n", path, method->name, curve.count);
+        if (*curve.remarks) say(a, "data", curve.remarks, "");
+        if (a->report) sn_report_text(a->report, "Data: %s. %s", path, curve.remarks);
+        status = method->analyze(&curve, a);
+    }
+    if (status != SN_OK) status = sn_fail_within(status, "%s", path);
+    if (status == SN_OK && folder) status = write_results(folder, a);
+fail:
+    sn_curve_release(&curve);
+    sn_record_destroy(record);
+    sn_report_destroy(a->report);
+    return status;
+}
+
+static int run(const cli_command *command, int argc, char **argv) {
+    const char *test = NULL, *folder = NULL;
+    const cli_option options[] = {
+        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic or relaxation"},
+        {"out", CLI_TEXT, "DIR", NULL, &folder, "writes analysis.json and report.html there"},
+    };
+    cli_arguments arguments;
+    int code = cli_parse(command, argc, argv, options, 2, &arguments);
+    if (code >= 0) return code;
+    if (arguments.count != 1)
+        return cli_refuse("analyze: expected one curve, got %d", arguments.count);
+    if (!test) return cli_refuse("analyze: --test is missing: tensile, cyclic or relaxation");
+    const char *names[METHODS];
+    for (int k = 0; k < METHODS; k++) {
+        names[k] = methods[k].name;
+        if (strcmp(test, names[k]) != 0) continue;
+        analysis a = {.test = test, .quiet = arguments.json || arguments.quiet};
+        sn_status status = analyze(arguments.item[0], &methods[k], folder, &a);
+        if (status != SN_OK) {
+            json_decref(a.json);
+            return cli_fail(status);
+        }
+        if (arguments.json)
+            cli_print_json(a.json);
+        else
+            json_decref(a.json);
+        return CLI_DONE;
+    }
+    return cli_unknown("test", test, names, METHODS);
+}
+
+const cli_command cli_analyze = {
+    "analyze", "CURVE.csv --test tensile|cyclic|relaxation [--out DIR]",
+    "properties of a measured curve: moduli, yield, strength, hysteresis, relaxation",
+    "sinew analyze data/cardiac-muscle/ramp-1s.csv --test relaxation", run};

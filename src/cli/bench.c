@@ -1,0 +1,97 @@
+// sinew bench: how fast the engine runs here.
+// SPDX-License-Identifier: Apache-2.0
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+
+typedef struct bench_plan {
+    sn_rung rung;
+    bool volume;
+    int memory_terms, cells;
+    sn_precision precision;
+} bench_plan;
+
+// 11^3, 21^3 and 41^3 nodes, what the published figures of other engines use
+static const bench_plan plans[] = {
+    {SN_RUNG_CENTRAL, false, 0, 20, SN_SINGLE}, {SN_RUNG_CENTRAL, false, 3, 10, SN_SINGLE},
+    {SN_RUNG_CENTRAL, false, 3, 20, SN_SINGLE}, {SN_RUNG_CENTRAL, false, 3, 40, SN_SINGLE},
+    {SN_RUNG_CENTRAL, true, 3, 20, SN_SINGLE},  {SN_RUNG_CENTRAL, true, 3, 20, SN_DOUBLE},
+    {SN_RUNG_COUPLED, true, 0, 20, SN_SINGLE},  {SN_RUNG_COUPLED, true, 3, 10, SN_SINGLE},
+    {SN_RUNG_COUPLED, true, 3, 20, SN_SINGLE},  {SN_RUNG_COUPLED, true, 3, 20, SN_DOUBLE},
+};
+
+#define PLANS ((int)(sizeof plans / sizeof plans[0]))
+
+static void machine_name(char *text, size_t size) {
+    snprintf(text, size, "unknown processor");
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    char line[512];
+    while (file && fgets(line, sizeof line, file)) {
+        char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !colon) continue;
+        colon[strcspn(colon, "\n")] = 0;
+        snprintf(text, size, "%s", colon + 2);
+        break;
+    }
+    if (file) fclose(file);
+}
+
+static json_t *row_json(const sn_springs_bench_row *r) {
+    return json_pack("{s:s, s:b, s:i, s:i, s:i, s:i, s:i, s:s, s:o, s:o, s:o}", "model", r->model,
+                     "volume", r->volume, "memory_terms", r->memory_terms, "nodes", r->nodes,
+                     "springs", r->springs, "cells", r->cells, "threads", r->threads, "precision",
+                     r->precision == SN_SINGLE ? "single" : "double", "springs_per_second",
+                     cli_number(r->springs_per_second), "cells_per_second",
+                     cli_number(r->cells_per_second), "bound_per_second",
+                     cli_number(r->bound_per_second));
+}
+
+static void print_row(const sn_springs_bench_row *r) {
+    double speed = r->springs_per_second > 0 ? r->springs_per_second : r->cells_per_second;
+    printf("%-16s %6d %8d %8d %6d  %-7s %9.1f M %-9s %9.1f M  %4.0f %%\n", r->model, r->nodes,
+           r->springs, r->cells, r->memory_terms, r->precision == SN_SINGLE ? "single" : "double",
+           1e-6 * speed, r->springs_per_second > 0 ? "springs/s" : "cells/s",
+           1e-6 * r->bound_per_second, 100 * speed / r->bound_per_second);
+    fflush(stdout);
+}
+
+static int run(const cli_command *command, int argc, char **argv) {
+    cli_arguments arguments;
+    int code = cli_parse(command, argc, argv, NULL, 0, &arguments);
+    if (code >= 0) return code;
+    static const char *const subjects[] = {"springs"};
+    if (arguments.count > 1) return cli_refuse("bench: expected one subject: springs");
+    if (arguments.count == 1 && strcmp(arguments.item[0], "springs") != 0)
+        return cli_unknown("benchmark", arguments.item[0], subjects, 1);
+    char machine[256];
+    machine_name(machine, sizeof machine);
+    bool table = !arguments.json && !arguments.quiet;
+    if (table)
+        printf("%s, one thread, kernels %s\n%-16s %6s %8s %8s %6s  %-7s %21s %11s  of it\n",
+               machine, sn_isa_name(), "model", "nodes", "springs", "cells", "terms", "real",
+               "speed", "bandwidth");
+    json_t *results = json_array();
+    for (int k = 0; k < PLANS; k++) {
+        sn_springs_bench_row row;
+        sn_status status = sn_springs_bench(plans[k].rung, plans[k].volume, plans[k].memory_terms,
+                                            plans[k].cells, plans[k].precision, &row);
+        if (status != SN_OK) {
+            json_decref(results);
+            return cli_fail(status);
+        }
+        json_array_append_new(results, row_json(&row));
+        if (table) print_row(&row);
+    }
+    json_t *json = json_pack("{s:o, s:s, s:s}", "results", results, "machine", machine, "kernels",
+                             sn_isa_name());
+    if (arguments.json)
+        cli_print_json(json);
+    else
+        json_decref(json);
+    return CLI_DONE;
+}
+
+const cli_command cli_bench = {"bench", "[springs]",
+                               "springs and cells per second, against the memory's bandwidth",
+                               "sinew bench springs", run};

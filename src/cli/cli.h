@@ -1,0 +1,90 @@
+// What the commands share: options, progress, output, exit codes.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <jansson.h>
+
+#include "sinew/sinew.h"
+
+/// Exit codes of every command.
+enum { CLI_DONE = 0, CLI_FAILED = 1, CLI_BAD_INPUT = 2 };
+
+/// A command: one file in this folder, one line in main.c.
+typedef struct cli_command {
+    const char *name;
+    const char *usage;   ///< what follows the name
+    const char *text;    ///< one line for the list of commands
+    const char *example; ///< a line that runs in the project's folder
+    int (*run)(const struct cli_command *command, int argc, char **argv);
+} cli_command;
+
+extern const cli_command cli_analyze, cli_fit, cli_test, cli_run, cli_compare, cli_bench;
+
+typedef enum cli_kind {
+    CLI_FLAG,     ///< bool
+    CLI_TEXT,     ///< const char *
+    CLI_LIST,     ///< cli_list, the option may be repeated
+    CLI_INTEGER,  ///< int, at least 1
+    CLI_QUANTITY, ///< double, SI; the argument carries its unit
+} cli_kind;
+
+typedef struct cli_list {
+    int count;
+    const char *item[SN_FIT_PARAMS_MAX];
+} cli_list;
+
+typedef struct cli_option {
+    const char *name; ///< without the dashes
+    cli_kind kind;
+    const char *argument; ///< how help writes the argument; NULL for a flag
+    const char *unit;     ///< SI unit of a quantity
+    void *value;          ///< default on entry
+    const char *text;
+} cli_option;
+
+/// What every command has, and the arguments that are not options.
+typedef struct cli_arguments {
+    int count;
+    char **item;
+    bool json, quiet;
+} cli_arguments;
+
+/// Parses options. @return -1 to go on, or the exit code (help printed, bad option reported).
+int cli_parse(const cli_command *command, int argc, char **argv, const cli_option *options,
+              int option_count, cli_arguments *arguments);
+/// Prints "sinew: text" on standard error. @return CLI_BAD_INPUT
+int cli_refuse(const char *format, ...) SN_PRINTF(1, 2);
+/// Prints sn_error_text() and gives the exit code that belongs to the status.
+int cli_fail(sn_status status);
+/// Refuses a word that is not in a list, with a suggestion. @return CLI_BAD_INPUT
+int cli_unknown(const char *what, const char *word, const char *const *names, int count);
+
+//---- progress ------------------------------------------------------------------------------------
+
+/// A bar on a terminal, plain lines otherwise, from the second second on.
+typedef struct cli_progress {
+    bool quiet, terminal, shown;
+    double start, last;
+} cli_progress;
+cli_progress cli_progress_start(const cli_arguments *arguments);
+/// An sn_output / sn_fit_def progress callback; context a cli_progress.
+void cli_progress_show(void *context, double done, const char *text);
+void cli_progress_end(cli_progress *progress);
+
+//---- results -------------------------------------------------------------------------------------
+
+/// A JSON number; null where it is not finite.
+json_t *cli_number(double value);
+/// A JSON array of numbers.
+json_t *cli_numbers(int count, const double *values);
+/// Writes an object to folder/name, indented.
+sn_status cli_write_json(const char *folder, const char *name, const json_t *object);
+/// Prints an object on standard output and releases it.
+void cli_print_json(json_t *object);
+/// folder + "/" + name in a buffer of the caller.
+const char *cli_path(char *buffer, size_t size, const char *folder, const char *name);
+/// The file name of a path, without its folders.
+const char *cli_basename(const char *path);
+/// A value with a readable unit: "12.3 kPa", "45 ms", "—" where it is not finite. Uses one of eight
+/// static buffers in turn.
+const char *cli_show(double value, const char *si_unit);

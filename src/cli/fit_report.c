@@ -1,0 +1,316 @@
+// The results of sinew fit: JSON, text, page.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/fit.h"
+
+// band and tolerance at which the spectrum's compression is reported: the span of the records
+#define COMPRESSION_TOLERANCE 1e-3
+
+static void time_span(const fit_outcome *o, double *shortest, double *longest) {
+    *shortest = INFINITY;
+    *longest = 0;
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_curve *c = &o->data->curve[k];
+        for (int i = 1; i < c->count; i++) *shortest = fmin(*shortest, c->time[i] - c->time[i - 1]);
+        *longest = fmax(*longest, c->time[c->count - 1] - c->time[0]);
+    }
+}
+
+static bool compress(const fit_outcome *o, sn_exponentials *e) {
+    double shortest, longest;
+    time_span(o, &shortest, &longest);
+    return sn_memory_compress(&o->fit->tissue.memory, shortest, longest, COMPRESSION_TOLERANCE,
+                              e) == SN_OK;
+}
+
+//---- JSON ----------------------------------------------------------------------------------------
+
+static json_t *parameters_json(const sn_fit_result *f, json_t *bounds, json_t *reasons) {
+    json_t *parameters = json_array();
+    for (int k = 0; k < f->param_count; k++) {
+        const sn_fit_param *p = &f->param[k];
+        json_array_append_new(parameters,
+                              json_pack("{s:s, s:o, s:s, s:o, s:[o,o], s:b, s:b}", "name", p->name,
+                                        "value", cli_number(p->value), "unit", p->unit,
+                                        "standard_error", cli_number(p->standard_error), "ci95",
+                                        cli_number(p->ci95[0]), cli_number(p->ci95[1]), "fixed",
+                                        p->fixed, "identifiable", p->identifiable));
+        if (p->at_bound) json_array_append_new(bounds, json_string(p->name));
+        if (!p->identifiable)
+            json_array_append_new(reasons,
+                                  json_pack("{s:s, s:s}", "name", p->name, "reason", p->reason));
+    }
+    return parameters;
+}
+
+static json_t *curves_json(const fit_outcome *o) {
+    json_t *data = json_array();
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_fit_curve *c = &o->fit->curve[k];
+        const sn_curve *measured = &o->data->curve[k];
+        json_t *row = json_pack(
+            "{s:s, s:s, s:i, s:[o,o], s:f, s:o, s:o, s:o}", "file", o->data->path[k], "sha256",
+            o->data->sha256[k], "points", c->count, "window", cli_number(measured->time[0]),
+            cli_number(measured->time[measured->count - 1]), "weight", 1.0, "rmse_Pa",
+            cli_number(c->rmse), "rmse_over_peak", cli_number(c->rmse / c->peak), "r_squared",
+            cli_number(c->r_squared));
+        json_object_set_new(row, "worst",
+                            json_pack("{s:o, s:o, s:o}", "time_s",
+                                      cli_number(measured->time[c->worst]), "measured_Pa",
+                                      cli_number(measured->stress[c->worst]), "fitted_Pa",
+                                      cli_number(c->predicted[c->worst])));
+        json_array_append_new(data, row);
+    }
+    return data;
+}
+
+json_t *fit_json(const fit_outcome *o) {
+    const sn_fit_result *f = o->fit;
+    json_t *bounds = json_array(), *reasons = json_array(), *correlation = json_array();
+    json_t *parameters = parameters_json(f, bounds, reasons);
+    for (int k = 0; k < f->param_count; k++)
+        json_array_append_new(correlation,
+                              cli_numbers(f->param_count, f->correlation + k * f->param_count));
+    json_t *json = json_pack(
+        "{s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:n, s:b, s:s, s:i, s:o}",
+        "elastic", f->tissue.law->name, "memory", f->tissue.memory.law->name, "parameters",
+        parameters, "r_squared", cli_number(f->r_squared), "rmse_Pa", cli_number(f->rmse), "nrmse",
+        cli_number(f->nrmse), "aicc", cli_number(f->aicc), "correlation", correlation,
+        "active_bounds", bounds, "identifiable", f->identifiable, "not_identifiable", reasons,
+        "convex", "converged", f->converged, "reason", f->reason, "points", f->points, "data",
+        curves_json(o));
+    sn_exponentials e;
+    if (compress(o, &e))
+        json_object_set_new(json, "memory_as_exponentials",
+                            json_pack("{s:i, s:o, s:[f,f], s:o, s:o, s:o}", "terms", e.terms,
+                                      "max_error", cli_number(e.max_error), "band_s", e.t_min,
+                                      e.t_max, "g_infinity", cli_number(e.g_inf), "g",
+                                      cli_numbers(e.terms, e.g), "tau_s",
+                                      cli_numbers(e.terms, e.tau)));
+    if (o->has_held_out) {
+        json_t *rows = json_array();
+        for (int k = 0; k < o->data->count; k++) {
+            const sn_fit_curve *c = &o->held_out[k].prediction;
+            json_array_append_new(rows, json_pack("{s:s, s:o, s:o, s:o}", "file", o->data->path[k],
+                                                  "rmse_Pa", cli_number(c->rmse), "rmse_over_peak",
+                                                  cli_number(c->rmse / c->peak), "r_squared",
+                                                  cli_number(c->r_squared)));
+        }
+        json_object_set_new(json, "held_out", rows);
+    }
+    return json;
+}
+
+//---- text ----------------------------------------------------------------------------------------
+
+void fit_print(const fit_outcome *o) {
+    const sn_fit_result *f = o->fit;
+    printf("%s x %s, %d curves, %d points: R2 %.4f, rms error %s (%.2f %% of the largest stress)\n",
+           f->tissue.law->name, f->tissue.memory.law->name, o->data->count, f->points, f->r_squared,
+           cli_show(f->rmse, "Pa"), 100 * f->nrmse);
+    for (int k = 0; k < f->param_count; k++) {
+        const sn_fit_param *p = &f->param[k];
+        printf("  %-10s %-14s", p->name, cli_show(p->value, p->unit));
+        if (p->fixed)
+            printf(" held\n");
+        else
+            printf(" 95 %% interval %s to %s%s%s\n", cli_show(p->ci95[0], p->unit),
+                   cli_show(p->ci95[1], p->unit),
+                   p->identifiable ? "" : "   NOT DETERMINED: ", p->identifiable ? "" : p->reason);
+    }
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_fit_curve *c = &f->curve[k];
+        const sn_curve *m = &o->data->curve[k];
+        printf("  %-24s rms %.2f %% of its peak; worst at %s: measured %s, fitted %s\n",
+               cli_basename(o->data->path[k]), 100 * c->rmse / c->peak,
+               cli_show(m->time[c->worst], "s"), cli_show(m->stress[c->worst], "Pa"),
+               cli_show(c->predicted[c->worst], "Pa"));
+        if (o->has_held_out)
+            printf("  %-24s predicted from the others: rms %.2f %% of its peak\n", "",
+                   100 * o->held_out[k].prediction.rmse / o->held_out[k].prediction.peak);
+    }
+    sn_exponentials e;
+    if (f->tissue.memory.law->param_count > 0 && compress(o, &e))
+        printf("  memory as %d exponentials: error at most %.2g of G(0) from %s to %s\n", e.terms,
+               e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
+    if (!f->converged) printf("  the search did not converge: %s\n", f->reason);
+}
+
+//---- page ----------------------------------------------------------------------------------------
+
+static void parameter_table(sn_report *report, const sn_fit_result *f) {
+    const char *cells[(SN_FIT_PARAMS_MAX + 1) * 4];
+    char text[SN_FIT_PARAMS_MAX][3][160];
+    int n = 0;
+    cells[n++] = "constant", cells[n++] = "value", cells[n++] = "95 % interval";
+    cells[n++] = "determined by the data";
+    for (int k = 0; k < f->param_count; k++) {
+        const sn_fit_param *p = &f->param[k];
+        snprintf(text[k][0], sizeof text[k][0], "%s", cli_show(p->value, p->unit));
+        snprintf(text[k][1], sizeof text[k][1], "%s … %s", cli_show(p->ci95[0], p->unit),
+                 cli_show(p->ci95[1], p->unit));
+        snprintf(text[k][2], sizeof text[k][2], "%s", p->identifiable ? "yes" : p->reason);
+        cells[n++] = p->name, cells[n++] = text[k][0];
+        cells[n++] = p->fixed ? "held" : text[k][1], cells[n++] = text[k][2];
+    }
+    sn_report_table(report, f->param_count + 1, 4, cells,
+                    "Constants. Elastic constants are instantaneous, G(0) = 1; intervals are "
+                    "linearised at the optimum, in the logarithm where the constant is positive.");
+}
+
+// what the law misses: the curve and the point with the largest residual
+static void misses(sn_report *report, const fit_outcome *o) {
+    int worst = 0;
+    double largest = 0;
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_fit_curve *c = &o->fit->curve[k];
+        double residual = fabs(o->data->curve[k].stress[c->worst] - c->predicted[c->worst]);
+        if (residual > largest) largest = residual, worst = k;
+    }
+    const sn_fit_curve *c = &o->fit->curve[worst];
+    const sn_curve *m = &o->data->curve[worst];
+    sn_report_text(
+        report,
+        "What the law misses: the largest residual is at %s of %s, where %s was measured "
+        "and the fit has %s (%.1f %% of that curve's peak).",
+        cli_show(m->time[c->worst], "s"), cli_basename(o->data->path[worst]),
+        cli_show(m->stress[c->worst], "Pa"), cli_show(c->predicted[c->worst], "Pa"),
+        100 * largest / c->peak);
+    for (int k = 0; k < o->fit->param_count; k++)
+        if (!o->fit->param[k].identifiable)
+            sn_report_text(report, "The data do not determine %s: %s.", o->fit->param[k].name,
+                           o->fit->param[k].reason);
+}
+
+static void curve_table(sn_report *report, const fit_outcome *o) {
+    const char *cells[(SN_FIT_CURVES_MAX + 1) * 4];
+    char text[SN_FIT_CURVES_MAX][3][48];
+    int n = 0, columns = o->has_held_out ? 4 : 3;
+    cells[n++] = "curve", cells[n++] = "peak", cells[n++] = "rms error, fitted";
+    if (columns == 4) cells[n++] = "rms error, predicted from the others";
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_fit_curve *c = &o->fit->curve[k], *h = &o->held_out[k].prediction;
+        snprintf(text[k][0], sizeof text[k][0], "%s", cli_show(c->peak, "Pa"));
+        snprintf(text[k][1], sizeof text[k][1], "%.2f %% of peak", 100 * c->rmse / c->peak);
+        if (columns == 4)
+            snprintf(text[k][2], sizeof text[k][2], "%.2f %% of peak", 100 * h->rmse / h->peak);
+        cells[n++] = cli_basename(o->data->path[k]);
+        for (int j = 0; j < columns - 1; j++) cells[n++] = text[k][j];
+    }
+    sn_report_table(report, o->data->count + 1, columns, cells, "Errors, curve by curve.");
+}
+
+// measured points and the fitted line of every curve; x is time or stretch
+static void fit_plot(sn_report *report, const fit_outcome *o, bool over_time, bool predicted) {
+    sn_line line[2 * SN_FIT_CURVES_MAX];
+    char label[SN_FIT_CURVES_MAX][SN_TEXT_MAX];
+    int n = 0;
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_curve *m = &o->data->curve[k];
+        const double *x = over_time ? m->time : m->stretch;
+        const double *fitted =
+            predicted ? o->held_out[k].prediction.predicted : o->fit->curve[k].predicted;
+        snprintf(label[k], sizeof label[k], "%s", cli_basename(o->data->path[k]));
+        line[n++] = (sn_line){label[k], SN_POINTS, k % 8, m->count, x, m->stress};
+        line[n++] = (sn_line){NULL, SN_LINE, k % 8, m->count, x, fitted};
+    }
+    sn_report_plot(report,
+                   &(sn_plot){.title = predicted   ? "Each curve predicted from the others"
+                                       : over_time ? "Stress over time"
+                                                   : "Stress against stretch",
+                              .x_label = over_time ? "time [s]" : "stretch [1]",
+                              .y_label = "nominal stress [Pa]",
+                              .caption = "Points: measured. Lines: model, through the recorded "
+                                         "history.",
+                              .log_x = over_time,
+                              .line_count = n,
+                              .line = line});
+}
+
+static void residual_plot(sn_report *report, const fit_outcome *o) {
+    sn_line line[SN_FIT_CURVES_MAX];
+    double *residual = sn_alloc((size_t)o->fit->points, sizeof *residual);
+    if (!residual) return; // sn_report_write reports the shortage that follows
+    int used = 0;
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_curve *m = &o->data->curve[k];
+        line[k] = (sn_line){cli_basename(o->data->path[k]),
+                            SN_LINE_POINTS,
+                            k % 8,
+                            m->count,
+                            m->time,
+                            residual + used};
+        for (int i = 0; i < m->count; i++)
+            residual[used++] = m->stress[i] - o->fit->curve[k].predicted[i];
+    }
+    sn_report_plot(report, &(sn_plot){.title = "Residuals",
+                                      .x_label = "time [s]",
+                                      .y_label = "measured - fitted [Pa]",
+                                      .log_x = true,
+                                      .line_count = o->data->count,
+                                      .line = line});
+    sn_free(residual);
+}
+
+#define G_POINTS 200
+
+static void memory_plot(sn_report *report, const fit_outcome *o) {
+    const sn_memory *memory = &o->fit->tissue.memory;
+    sn_exponentials e;
+    if (memory->law->param_count == 0 || !compress(o, &e)) return;
+    double t[G_POINTS], exact[G_POINTS], sum[G_POINTS];
+    for (int i = 0; i < G_POINTS; i++) {
+        t[i] = e.t_min * pow(e.t_max / e.t_min, i / (G_POINTS - 1.0));
+        exact[i] = sn_memory_relaxation(memory, t[i]);
+        sum[i] = sn_exponentials_at(&e, t[i]);
+    }
+    char label[64], caption[256];
+    snprintf(label, sizeof label, "%d exponentials", e.terms);
+    snprintf(caption, sizeof caption,
+             "The memory and the %d exponentials that the engines carry: largest error %.2g of "
+             "G(0) from %s to %s.",
+             e.terms, e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
+    sn_line line[] = {{memory->law->name, SN_LINE, 0, G_POINTS, t, exact},
+                      {label, SN_DASHED, 1, G_POINTS, t, sum},
+                      {"weights g at their times", SN_BARS, 2, e.terms, e.tau, e.g}};
+    sn_report_plot(report, &(sn_plot){.title = "Reduced relaxation function",
+                                      .x_label = "time [s]",
+                                      .y_label = "G [1]",
+                                      .caption = caption,
+                                      .log_x = true,
+                                      .line_count = 3,
+                                      .line = line});
+}
+
+sn_status fit_report(const char *path, const fit_outcome *o) {
+    sn_report *report;
+    const sn_fit_result *f = o->fit;
+    char title[SN_TEXT_MAX];
+    snprintf(title, sizeof title, "%s: %s x %s", f->tissue.name, f->tissue.law->name,
+             f->tissue.memory.law->name);
+    SN_TRY(sn_report_create(title, &report));
+    sn_report_text(report,
+                   "%d curves, %d points, fitted together through their recorded histories: R2 = "
+                   "1 - SSE/SST = %.4f, rms error %s (%.2f %% of the largest stress), AICc %.1f.",
+                   o->data->count, f->points, f->r_squared, cli_show(f->rmse, "Pa"), 100 * f->nrmse,
+                   f->aicc);
+    if (!f->converged) sn_report_text(report, "The search did not converge: %s", f->reason);
+    parameter_table(report, f);
+    misses(report, o);
+    curve_table(report, o);
+    fit_plot(report, o, true, false);
+    fit_plot(report, o, false, false);
+    residual_plot(report, o);
+    if (o->has_held_out) fit_plot(report, o, true, true);
+    memory_plot(report, o);
+    sn_report_heading(report, "Data");
+    for (int k = 0; k < o->data->count; k++)
+        sn_report_text(report, "%s, SHA-256 %s. %s", o->data->path[k], o->data->sha256[k],
+                       o->data->curve[k].remarks);
+    sn_status status = sn_report_write(report, path);
+    sn_report_destroy(report);
+    return status;
+}

@@ -1,0 +1,243 @@
+// sinew run: a case through one engine.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cli/cli.h"
+
+static json_t *probes_json(const sn_record *history) {
+    json_t *probes = json_object();
+    for (int k = 1; history->rows > 0 && k < history->series_count; k++)
+        json_object_set_new(probes, history->series[k].name,
+                            cli_number(history->series[k].value[history->rows - 1]));
+    return probes;
+}
+
+static json_t *summary_json(const sn_run_summary *s, const sn_record *history) {
+    json_t *json = json_pack(
+        "{s:s, s:s, s:i, s:i, s:i, s:i, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "engine",
+        s->engine, "model", s->model, "nodes", s->nodes, "cells", s->cells, "springs", s->springs,
+        "unknowns", s->unknowns, "step_s", cli_number(s->step_s), "steps", (json_int_t)s->steps,
+        "simulated_s", cli_number(s->simulated_s), "wall_s", cli_number(s->wall_s),
+        "real_time_factor", cli_number(s->real_time_factor), "step_wall_p50_s",
+        cli_number(s->step_wall_p50_s), "step_wall_p99_s", cli_number(s->step_wall_p99_s),
+        "step_wall_max_s", cli_number(s->step_wall_max_s));
+    json_object_update_new(
+        json,
+        json_pack("{s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:[o,o], s:i, s:i, s:i, s:b, s:s, s:s, s:o}",
+                  "kinetic_J", cli_number(s->kinetic_J), "elastic_J", cli_number(s->elastic_J),
+                  "dissipated_J", cli_number(s->dissipated_J), "external_work_J",
+                  cli_number(s->external_work_J), "energy_residual", cli_number(s->energy_residual),
+                  "memory_terms", s->memory_terms, "memory_error", cli_number(s->memory_error),
+                  "memory_band_s", cli_number(s->memory_band_s[0]), cli_number(s->memory_band_s[1]),
+                  "threads", s->threads, "newton_iterations", s->newton_iterations, "cutbacks",
+                  s->cutbacks, "converged", s->converged, "reason", s->reason, "note", s->note,
+                  "probes", probes_json(history)));
+    return json;
+}
+
+//---- frames: to ParaView, and the last one to the report -----------------------------------------
+
+typedef struct run_context {
+    cli_progress progress;
+    sn_vtu *vtu;
+    int nodes;
+    double *displacement; ///< of the last frame                    (nodes x 3)
+} run_context;
+
+static sn_status take_frame(void *context, const sn_frame *frame) {
+    run_context *r = context;
+    for (int k = 0; k < frame->field_count; k++)
+        if (strcmp(frame->fields[k].name, "displacement") == 0)
+            memcpy(r->displacement, frame->fields[k].value,
+                   (size_t)r->nodes * 3 * sizeof *r->displacement);
+    return r->vtu ? sn_vtu_frame(r->vtu, frame) : SN_OK;
+}
+
+static void pass_progress(void *context, double done, const char *text) {
+    cli_progress_show(&((run_context *)context)->progress, done, text);
+}
+
+//---- report --------------------------------------------------------------------------------------
+
+// one plot for all columns of a probe: NAME_ux NAME_uy NAME_uz
+static void history_plots(sn_report *report, const sn_record *history) {
+    static const char *const axes[] = {"x", "y", "z"};
+    for (int k = 1; k + 2 < history->series_count; k += 3) {
+        char title[SN_NAME_MAX + 16], label[32];
+        const sn_series *s = &history->series[k];
+        snprintf(title, sizeof title, "%.*s", (int)strlen(s->name) - 3, s->name);
+        snprintf(label, sizeof label, "%s [%s]", strcmp(s->unit, "N") ? "displacement" : "force",
+                 s->unit);
+        sn_line line[3];
+        for (int d = 0; d < 3; d++)
+            line[d] =
+                (sn_line){axes[d],       SN_LINE_POINTS,           d,
+                          history->rows, history->series[0].value, history->series[k + d].value};
+        sn_report_plot(report, &(sn_plot){.title = title,
+                                          .x_label = "time [s]",
+                                          .y_label = label,
+                                          .line_count = 3,
+                                          .line = line});
+    }
+}
+
+static void summary_table(sn_report *report, const sn_run_summary *s) {
+    char nodes[64], steps[96], factor[96], memory[128];
+    snprintf(nodes, sizeof nodes, "%d nodes, %d cells, %d springs", s->nodes, s->cells, s->springs);
+    snprintf(steps, sizeof steps, "%ld, smallest %s", s->steps, cli_show(s->step_s, "s"));
+    snprintf(factor, sizeof factor, "%.3g (%s in %s)", s->real_time_factor,
+             cli_show(s->simulated_s, "s"), cli_show(s->wall_s, "s"));
+    snprintf(memory, sizeof memory, "%d exponentials, error at most %.2g over %s … %s",
+             s->memory_terms, s->memory_error, cli_show(s->memory_band_s[0], "s"),
+             cli_show(s->memory_band_s[1], "s"));
+    const char *cells[] = {"quantity",
+                           "value",
+                           "engine",
+                           s->engine,
+                           "model",
+                           s->model,
+                           "size",
+                           nodes,
+                           "steps",
+                           steps,
+                           "real-time factor",
+                           factor,
+                           "memory",
+                           memory,
+                           "elastic energy",
+                           cli_show(s->elastic_J, "J"),
+                           "external work",
+                           cli_show(s->external_work_J, "J")};
+    sn_report_table(report, 9, 2, cells, "Summary");
+}
+
+static sn_status write_report(const char *path, const sn_case *c, const sn_run_summary *s,
+                              const sn_record *history, const run_context *r) {
+    sn_report *report;
+    char title[SN_TEXT_MAX + 32];
+    snprintf(title, sizeof title, "%s (%s)", c->name, s->engine);
+    SN_TRY(sn_report_create(title, &report));
+    summary_table(report, s);
+    if (*s->reason) sn_report_text(report, "The run ended early: %s", s->reason);
+    if (*s->note) sn_report_text(report, "Note: %s", s->note);
+    double *magnitude = sn_alloc((size_t)r->nodes, sizeof *magnitude);
+    sn_status status = magnitude ? SN_OK : SN_E_MEMORY;
+    if (magnitude) {
+        for (int i = 0; i < r->nodes; i++)
+            magnitude[i] = hypot(hypot(r->displacement[3 * i], r->displacement[3 * i + 1]),
+                                 r->displacement[3 * i + 2]);
+        sn_body body = {c->name, "displacement [m]", c->mesh, r->displacement, magnitude, 0};
+        sn_report_bodies(report, 1, &body, "The body at the last output time. Drag to turn it.");
+        history_plots(report, history);
+        status = sn_report_write(report, path);
+    }
+    sn_free(magnitude);
+    sn_report_destroy(report);
+    return status;
+}
+
+//---- the command ---------------------------------------------------------------------------------
+
+static sn_status write_results(const char *folder, const sn_case *c, const sn_run_summary *s,
+                               const sn_record *history, const run_context *r) {
+    char path[4096];
+    SN_TRY(sn_curve_write(cli_path(path, sizeof path, folder, "history.csv"), history, true));
+    json_t *json = summary_json(s, history);
+    sn_status status = cli_write_json(folder, "summary.json", json);
+    json_decref(json);
+    if (status != SN_OK) return status;
+    return write_report(cli_path(path, sizeof path, folder, "report.html"), c, s, history, r);
+}
+
+static void print_summary(const sn_run_summary *s, const sn_record *history, const char *folder) {
+    printf("%s, %s: %d nodes, %d cells, %d springs\n", s->engine, s->model, s->nodes, s->cells,
+           s->springs);
+    printf("  %s simulated in %s (real-time factor %.3g), %ld steps of at least %s\n",
+           cli_show(s->simulated_s, "s"), cli_show(s->wall_s, "s"), s->real_time_factor, s->steps,
+           cli_show(s->step_s, "s"));
+    if (s->memory_terms)
+        printf("  memory: %d exponentials, error at most %.2g of G(0) over %s to %s\n",
+               s->memory_terms, s->memory_error, cli_show(s->memory_band_s[0], "s"),
+               cli_show(s->memory_band_s[1], "s"));
+    for (int k = 1; history->rows > 0 && k < history->series_count; k++)
+        printf("  %-24s %s\n", history->series[k].name,
+               cli_show(history->series[k].value[history->rows - 1], history->series[k].unit));
+    if (*s->note) printf("  note: %s\n", s->note);
+    if (folder)
+        printf("  results in %s (report.html, summary.json, history.csv, fields.pvd)\n", folder);
+}
+
+typedef sn_status engine_function(const sn_case *c, const sn_output *output,
+                                  sn_run_summary *summary, sn_record *history);
+
+static sn_status run_case(const char *path, engine_function *engine, const char *folder,
+                          const cli_arguments *arguments, sn_run_summary *summary) {
+    sn_case *c = NULL;
+    sn_record *history = NULL;
+    run_context r = {.progress = cli_progress_start(arguments)};
+    sn_output output = {&r, take_frame, pass_progress};
+    sn_status status;
+    SN_TRY_GOTO(status, sn_case_read(path, &c));
+    SN_TRY_GOTO(status, sn_record_create(c->name, &history));
+    r.nodes = c->mesh->node_count;
+    r.displacement = sn_alloc((size_t)r.nodes, 3 * sizeof *r.displacement);
+    if (!r.displacement) {
+        status = SN_E_MEMORY;
+        goto fail;
+    }
+    if (folder) {
+        SN_TRY_GOTO(status, sn_folder_make(folder));
+        SN_TRY_GOTO(status, sn_vtu_create(folder, "fields", c->mesh, &r.vtu));
+    }
+    status = engine(c, &output, summary, history);
+    cli_progress_end(&r.progress);
+    if (status != SN_OK) {
+        status = sn_fail_within(status, "%s", path);
+        goto fail;
+    }
+    if (folder) SN_TRY_GOTO(status, write_results(folder, c, summary, history, &r));
+    if (arguments->json)
+        cli_print_json(summary_json(summary, history));
+    else if (!arguments->quiet)
+        print_summary(summary, history, folder);
+fail:
+    sn_vtu_destroy(r.vtu);
+    sn_free(r.displacement);
+    sn_record_destroy(history);
+    sn_case_destroy(c);
+    return status;
+}
+
+static int run(const cli_command *command, int argc, char **argv) {
+    static const char *const engines[] = {"springs", "continuum"};
+    static engine_function *const functions[] = {sn_springs_run, sn_continuum_run};
+    const char *engine = NULL, *folder = NULL;
+    const cli_option options[] = {
+        {"engine", CLI_TEXT, "NAME", NULL, &engine, "springs or continuum"},
+        {"out", CLI_TEXT, "DIR", NULL, &folder,
+         "writes report.html, summary.json, history.csv and fields.pvd there"},
+    };
+    cli_arguments arguments;
+    int code = cli_parse(command, argc, argv, options, 2, &arguments);
+    if (code >= 0) return code;
+    if (arguments.count != 1)
+        return cli_refuse("run: expected one case file, got %d", arguments.count);
+    if (!engine) return cli_refuse("run: --engine is missing: springs or continuum");
+    for (int k = 0; k < 2; k++) {
+        if (strcmp(engine, engines[k]) != 0) continue;
+        sn_run_summary summary = {0};
+        sn_status status = run_case(arguments.item[0], functions[k], folder, &arguments, &summary);
+        if (status != SN_OK) return cli_fail(status);
+        if (summary.converged) return CLI_DONE;
+        cli_refuse("%s: %s", arguments.item[0], summary.reason);
+        return CLI_FAILED;
+    }
+    return cli_unknown("engine", engine, engines, 2);
+}
+
+const cli_command cli_run = {"run", "CASE.yaml --engine springs|continuum [--out DIR]",
+                             "one case through the springs or the finite elements",
+                             "sinew run examples/muscle/strip-1s.yaml --engine springs --out out",
+                             run};

@@ -1,0 +1,163 @@
+// Error norms on what two runs of one case handed out.
+// SPDX-License-Identifier: Apache-2.0
+#include "compare/norms.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double *field_values(const sn_frame *frame, const char *name) {
+    for (int k = 0; k < frame->field_count; k++)
+        if (strcmp(frame->fields[k].name, name) == 0) return frame->fields[k].value;
+    SN_ASSERT(!"engines hand out displacement and cauchy_stress");
+    return NULL;
+}
+
+static sn_status grow(sn_capture *c) {
+    int capacity = c->capacity ? 2 * c->capacity : 16;
+    double *time = sn_resize(c->time, (size_t)capacity, sizeof *time);
+    if (!time) return SN_E_MEMORY;
+    c->time = time;
+    double *u = sn_resize(c->displacement, (size_t)capacity * (size_t)c->nodes, 3 * sizeof *u);
+    if (!u) return SN_E_MEMORY;
+    c->displacement = u;
+    double *s = sn_resize(c->stress, (size_t)capacity * (size_t)c->cells, 6 * sizeof *s);
+    if (!s) return SN_E_MEMORY;
+    c->stress = s;
+    c->capacity = capacity;
+    return SN_OK;
+}
+
+sn_status sn_capture_frame(void *context, const sn_frame *frame) {
+    sn_capture *c = context;
+    if (c->frames == c->capacity) SN_TRY(grow(c));
+    size_t u = (size_t)c->nodes * 3, s = (size_t)c->cells * 6, i = (size_t)c->frames;
+    c->time[i] = frame->time;
+    memcpy(c->displacement + i * u, field_values(frame, "displacement"), u * sizeof(double));
+    memcpy(c->stress + i * s, field_values(frame, "cauchy_stress"), s * sizeof(double));
+    c->frames++;
+    return SN_OK;
+}
+
+void sn_capture_release(sn_capture *capture) {
+    sn_free(capture->time);
+    sn_free(capture->displacement);
+    sn_free(capture->stress);
+    *capture = (sn_capture){0};
+}
+
+static double cell_volume(const sn_mesh *mesh, int cell) {
+    const int *n = mesh->cell + 4 * cell;
+    double e[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int d = 0; d < 3; d++)
+            e[k][d] = mesh->node[3 * n[k + 1] + d] - mesh->node[3 * n[0] + d];
+    return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+            e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
+           6;
+}
+
+sn_status sn_node_weights(const sn_mesh *mesh, double **weight) {
+    double total = sn_mesh_volume(mesh), *w = sn_alloc((size_t)mesh->node_count, sizeof *w);
+    if (!w) return SN_E_MEMORY;
+    for (int c = 0; c < mesh->cell_count; c++)
+        for (int k = 0; k < 4; k++) w[mesh->cell[4 * c + k]] += cell_volume(mesh, c) / 4 / total;
+    *weight = w;
+    return SN_OK;
+}
+
+sn_status sn_cell_weights(const sn_mesh *mesh, double **weight) {
+    double total = sn_mesh_volume(mesh), *w = sn_alloc((size_t)mesh->cell_count, sizeof *w);
+    if (!w) return SN_E_MEMORY;
+    for (int c = 0; c < mesh->cell_count; c++) w[c] = cell_volume(mesh, c) / total;
+    *weight = w;
+    return SN_OK;
+}
+
+static double norm3(const double *v) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+// off-diagonal components stand for two
+static double norm6(const double *s) {
+    return sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2] +
+                2 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+double sn_displacement_scale(const sn_capture *capture) {
+    double scale = 0;
+    for (size_t i = 0; i < (size_t)capture->frames * (size_t)capture->nodes; i++)
+        scale = fmax(scale, norm3(capture->displacement + 3 * i));
+    return scale;
+}
+
+double sn_stress_scale(const sn_capture *capture) {
+    double scale = 0;
+    for (size_t i = 0; i < (size_t)capture->frames * (size_t)capture->cells; i++)
+        scale = fmax(scale, norm6(capture->stress + 6 * i));
+    return scale;
+}
+
+static int common_frames(const sn_capture *a, const sn_capture *b) {
+    int frames = a->frames < b->frames ? a->frames : b->frames;
+    for (int f = 0; f < frames; f++)
+        SN_ASSERT(fabs(a->time[f] - b->time[f]) <= 1e-9 * fabs(b->time[frames - 1]));
+    return frames;
+}
+
+void sn_displacement_error(const sn_capture *a, const sn_capture *b, const double *weight,
+                           double *rms, double *max) {
+    int frames = common_frames(a, b);
+    double sum = 0;
+    *max = 0;
+    for (int f = 0; f < frames; f++) {
+        for (int i = 0; i < a->nodes; i++) {
+            size_t at = ((size_t)f * (size_t)a->nodes + (size_t)i) * 3;
+            double d[3];
+            for (int k = 0; k < 3; k++)
+                d[k] = a->displacement[at + (size_t)k] - b->displacement[at + (size_t)k];
+            double error = norm3(d);
+            sum += weight[i] * error * error;
+            *max = fmax(*max, error);
+        }
+    }
+    *rms = sqrt(sum / frames);
+}
+
+double sn_stress_error(const sn_capture *a, const sn_capture *b, const double *weight) {
+    int frames = common_frames(a, b);
+    double sum = 0;
+    for (int f = 0; f < frames; f++) {
+        for (int i = 0; i < a->cells; i++) {
+            size_t at = ((size_t)f * (size_t)a->cells + (size_t)i) * 6;
+            double d[6];
+            for (int k = 0; k < 6; k++)
+                d[k] = a->stress[at + (size_t)k] - b->stress[at + (size_t)k];
+            double error = norm6(d);
+            sum += weight[i] * error * error;
+        }
+    }
+    return sqrt(sum / frames);
+}
+
+double sn_reaction_error(const sn_record *a, const sn_record *b) {
+    int rows = a->rows < b->rows ? a->rows : b->rows;
+    double worst = NAN;
+    for (int k = 0; k + 2 < b->series_count; k++) {
+        size_t length = strlen(b->series[k].name);
+        if (length < 3 || strcmp(b->series[k].name + length - 3, "_fx") != 0) continue;
+        double sum = 0, scale = 0;
+        for (int i = 0; i < rows; i++) {
+            double d[3], f[3];
+            for (int j = 0; j < 3; j++) {
+                f[j] = b->series[k + j].value[i];
+                d[j] = a->series[k + j].value[i] - f[j];
+            }
+            sum += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            scale = fmax(scale, norm3(f));
+        }
+        double error = sqrt(sum / rows) / scale;
+        if (isnan(worst) || error > worst) worst = error;
+    }
+    return worst;
+}

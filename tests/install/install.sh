@@ -1,0 +1,19 @@
+# Installs the build into an empty folder and compiles a program against sinew.pc and against the
+# CMake package. BUILD is the build folder.
+. "$SOURCE/tests/cli/lib.sh"
+
+cmake --install "$BUILD" --prefix "$PWD/prefix" >install.log
+library=$(dirname "$(find prefix -name sinew.pc)")/..
+# compiling without the flags must fail, or the test shows nothing
+! cc "$SOURCE/tests/install/relax.c" -o without 2>/dev/null || die "compiled without sinew.pc"
+flags=$(PKG_CONFIG_PATH="$library/pkgconfig" pkg-config --define-variable=prefix="$PWD/prefix" \
+    --cflags --libs sinew)
+cc "$SOURCE/tests/install/relax.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -o relax-pc
+[ "$(LD_LIBRARY_PATH=$library ./relax-pc)" = 0.730748613 ] || die "wrong result through sinew.pc"
+
+cmake -S "$SOURCE/tests/install" -B outside -DCMAKE_PREFIX_PATH="$PWD/prefix" \
+    ${SANITIZE:+-DCMAKE_C_FLAGS=-fsanitize=$SANITIZE} >cmake.log
+cmake --build outside >>cmake.log
+[ "$(outside/relax)" = 0.730748613 ] || die "wrong result through the CMake package"
+
+[ "$(prefix/bin/sinew --version | cut -d' ' -f1)" = sinew ] || die "the installed command does not run"
