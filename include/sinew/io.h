@@ -26,7 +26,7 @@ SN_API sn_status sn_quantity_parse(const char *text, const char *si_unit, double
 //---- curves --------------------------------------------------------------------------------------
 
 /// Reads a curve: columns in SI units under the names of the manual, remarks with their SI values.
-/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_KEY, SN_E_UNIT, SN_E_DATA.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_KEY, SN_E_UNIT, SN_E_RANGE, SN_E_DATA.
 SN_API sn_status sn_curve_read(const char *path, sn_record **record);
 /// Writes a record as CSV: remarks, header "name [unit],…", 9 significant digits or more as needed
 /// to read back the same doubles (17 where `exact`).

@@ -142,7 +142,8 @@ typedef struct sn_fit_def {
 } sn_fit_def;
 SN_API sn_fit_def sn_fit_def_default(void);
 
-/// One constant of a fit. Terms of a list are named g1, g2, …
+/// One constant of a fit. Terms of a list are named g1, g2, …; a constant of the memory whose name the
+/// law has as well is named memory.c.
 typedef struct sn_fit_param {
     char name[SN_NAME_MAX];
     char unit[SN_NAME_MAX];

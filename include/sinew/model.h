@@ -82,6 +82,9 @@ SN_API int sn_mesh_surface(const sn_mesh *mesh, const char *name);
 SN_API sn_status sn_mesh_surface_nodes(const sn_mesh *mesh, int surface, int **nodes, int *count);
 /// Unique edges, ends rising, sorted. *edges (count x 2) is sn_alloc'd for the caller.
 SN_API sn_status sn_mesh_edges(const sn_mesh *mesh, int **edges, int *count);
+/// Signed volume of a cell, m3.
+SN_API double sn_mesh_cell_volume(const sn_mesh *mesh, int cell);
+/// Volume of the body, m3.
 SN_API double sn_mesh_volume(const sn_mesh *mesh);
 
 //---- supports, loads, tools, probes --------------------------------------------------------------

@@ -45,23 +45,12 @@ void sn_capture_release(sn_capture *capture) {
     *capture = (sn_capture){0};
 }
 
-static double cell_volume(const sn_mesh *mesh, int cell) {
-    const int *n = mesh->cell + 4 * cell;
-    double e[3][3];
-    for (int k = 0; k < 3; k++)
-        for (int d = 0; d < 3; d++)
-            e[k][d] = mesh->node[3 * n[k + 1] + d] - mesh->node[3 * n[0] + d];
-    return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-            e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-            e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-           6;
-}
-
 sn_status sn_node_weights(const sn_mesh *mesh, double **weight) {
     double total = sn_mesh_volume(mesh), *w = sn_alloc((size_t)mesh->node_count, sizeof *w);
     if (!w) return SN_E_MEMORY;
     for (int c = 0; c < mesh->cell_count; c++)
-        for (int k = 0; k < 4; k++) w[mesh->cell[4 * c + k]] += cell_volume(mesh, c) / 4 / total;
+        for (int k = 0; k < 4; k++)
+            w[mesh->cell[4 * c + k]] += sn_mesh_cell_volume(mesh, c) / 4 / total;
     *weight = w;
     return SN_OK;
 }
@@ -69,7 +58,7 @@ sn_status sn_node_weights(const sn_mesh *mesh, double **weight) {
 sn_status sn_cell_weights(const sn_mesh *mesh, double **weight) {
     double total = sn_mesh_volume(mesh), *w = sn_alloc((size_t)mesh->cell_count, sizeof *w);
     if (!w) return SN_E_MEMORY;
-    for (int c = 0; c < mesh->cell_count; c++) w[c] = cell_volume(mesh, c) / total;
+    for (int c = 0; c < mesh->cell_count; c++) w[c] = sn_mesh_cell_volume(mesh, c) / total;
     *weight = w;
     return SN_OK;
 }
