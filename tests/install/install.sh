@@ -11,6 +11,9 @@ flags=$(PKG_CONFIG_PATH="$library/pkgconfig" pkg-config --define-variable=prefix
 cc "$SOURCE/tests/install/relax.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -o relax-pc
 [ "$(LD_LIBRARY_PATH=$library ./relax-pc)" = 0.730748613 ] || die "wrong result through sinew.pc"
 
+cc "$SOURCE/examples/embed/poke.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -o poke
+LD_LIBRARY_PATH=$library ./poke >poke.log || die "the embedding example: $(cat poke.log)"
+
 cmake -S "$SOURCE/tests/install" -B outside -DCMAKE_PREFIX_PATH="$PWD/prefix" \
     ${SANITIZE:+-DCMAKE_C_FLAGS=-fsanitize=$SANITIZE} >cmake.log
 cmake --build outside >>cmake.log
