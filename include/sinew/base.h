@@ -220,7 +220,7 @@ typedef struct sn_frame {
 
 //---- special functions --------------------------------------------------------------------------
 
-/// Exponential integral E1(x) for x > 0, to 2e-15 relative; INFINITY at 0.
+/// Exponential integral E1(x) for x > 0, to 1e-14 relative; INFINITY at 0.
 /// Source: series and continued fraction, Abramowitz & Stegun 5.1.11 and 5.1.22.
 SN_API double sn_expint_e1(double x);
 
