@@ -98,7 +98,7 @@ typedef struct sn_cycle {
 } sn_cycle;
 typedef struct sn_cycles {
     int count;
-    sn_cycle *cycle; ///< owned
+    sn_cycle *cycle;           ///< owned
     char remarks[SN_TEXT_MAX]; ///< rows left out and why; empty where all were used
 } sn_cycles;
 /// Splits a curve at the turns of its stretch (turns smaller than 5 % of the range are noise) and
@@ -142,14 +142,15 @@ typedef struct sn_fit_def {
 } sn_fit_def;
 SN_API sn_fit_def sn_fit_def_default(void);
 
-/// One constant of a fit. Terms of a list are named g1, g2, …; a constant of the memory whose name the
-/// law has as well is named memory.c.
+/// One constant of a fit. Terms of a list are named g1, g2, …; a constant of the memory whose name
+/// the law has as well is named memory.c.
 typedef struct sn_fit_param {
     char name[SN_NAME_MAX];
     char unit[SN_NAME_MAX];
     double value, standard_error; ///< NAN error for a fixed parameter
     /// 95 % interval, NAN for a fixed parameter: linearised where it is narrow, from the likelihood
-    /// profile where it is wide; an end that meets the bounds of the search is open there.
+    /// profile where it is wide (the error is then the interval over 2 t); an end that meets the
+    /// bounds of the search is open there.
     double ci95[2];
     bool profiled; ///< ci95 is from the profile
     bool fixed, at_bound;
@@ -172,9 +173,9 @@ typedef struct sn_fit_result {
     int param_count;
     sn_fit_param param[SN_FIT_PARAMS_MAX];
     double correlation[SN_FIT_PARAMS_MAX * SN_FIT_PARAMS_MAX]; ///< (param_count x param_count)
-    double condition; ///< condition number of J^T J with its columns scaled to 1
+    double condition;          ///< condition number of J^T J with its columns scaled to 1
     char weakest[SN_TEXT_MAX]; ///< the combination of constants that the data know least
-    bool identifiable; ///< every constant is
+    bool identifiable;         ///< every constant is
     bool converged;
     char reason[SN_TEXT_MAX]; ///< of the end of the search
     int points;
@@ -184,8 +185,8 @@ typedef struct sn_fit_result {
     int evaluations;
 } sn_fit_result;
 
-/// Fits law and memory together, through the recorded stretch history of every curve. A bulk modulus
-/// is no parameter of a uniaxial fit: it is infinite unless fixed. Same input, same bits.
+/// Fits law and memory together, through the recorded stretch history of every curve. A bulk
+/// modulus is no parameter of a uniaxial fit: it is infinite unless fixed. Same input, same bits.
 /// @return SN_OK, SN_E_DATA (no time, fewer points than parameters, constant stretch),
 /// SN_E_UNSUPPORTED (a law and a test that do not go together), SN_E_NAME (fixed name), SN_E_RANGE
 /// (fixed value), SN_E_DEFINITION (no curve, no law, too many parameters), SN_E_MEMORY.

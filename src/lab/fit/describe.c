@@ -1,0 +1,176 @@
+// Values, intervals and identifiability of the constants of a fit, in words.
+// SPDX-License-Identifier: Apache-2.0
+//
+// A constant is called identifiable unless one of these holds; the first that does is the reason.
+//  1. It stands at a bound of the search.
+//  2. It is a relaxation time that the test cannot show: under a third of the fastest ramp (the
+//  ramp
+//     hides it), under the shortest sampling interval of a ramp, or over the longest record.
+//  3. Its 95 % interval is open: it reaches a bound of the search.
+//  4. Its interval is wide: ends more than a factor of 10 apart where the scale is the logarithm,
+//  or
+//     more than the value apart where it is not.
+//  5. Its interval is moderately wide (a factor of 2, or 0.7 of the value) and it is tied to
+//  another
+//     constant by a correlation beyond 0.98: only a combination of the two is known.
+// A correlation alone is no reason: B and C of an exponential law are tied in every test, and
+// narrow intervals of both say that the data tell them apart.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "lab/fit/statistics.h"
+
+static const double hidden = 1.0 / 3.0, wide_factor = 10.0, wide_part = 1.0;
+static const double moderate_factor = 2.0, moderate_part = 0.7, tied = 0.98;
+
+// wider than the factor (logarithmic constants) or part of the value (the others)
+static bool wider(const sn_fit_constant *c, const sn_fit_param *p, double factor, double part) {
+    if (c->param->log_scale) return p->ci95[1] > factor * p->ci95[0];
+    return p->ci95[1] - p->ci95[0] > part * fabs(p->value);
+}
+
+// in the scale of the fit, where a bound may be 18 e-folds away
+static bool meets(const sn_fit_constant *c, double value, double bound) {
+    double range = sn_problem_scaled(c, c->high) - sn_problem_scaled(c, c->low);
+    return fabs(sn_problem_scaled(c, value) - sn_problem_scaled(c, bound)) <= 2e-3 * range;
+}
+
+static void linear_interval(const sn_fit_constant *c, double x, double half, sn_fit_param *p) {
+    p->ci95[0] = sn_problem_natural(c, x - half);
+    p->ci95[1] = sn_problem_natural(c, x + half);
+}
+
+// the error that has the same interval, so that errors and intervals tell one story
+static void from_profile(const sn_fit_constant *c, const double interval[2], double student,
+                         sn_fit_param *p) {
+    for (int side = 0; side < 2; ++side) p->ci95[side] = sn_problem_natural(c, interval[side]);
+    double error = (interval[1] - interval[0]) / (2.0 * student);
+    p->standard_error = error * (c->param->log_scale ? p->value : 1.0);
+}
+
+static bool because_of_time(const sn_problem *problem, const sn_fit_constant *c, sn_fit_param *p) {
+    if (!c->time) return false;
+    if (p->value < problem->sampling)
+        snprintf(p->reason, sizeof p->reason,
+                 "shorter than the shortest sampling interval of a ramp, %.3g s",
+                 problem->sampling);
+    else if (p->value < hidden * problem->ramp)
+        snprintf(p->reason, sizeof p->reason,
+                 "hidden by the ramp: under a third of the fastest ramp, %.3g s", problem->ramp);
+    else if (p->value > problem->record)
+        snprintf(p->reason, sizeof p->reason, "longer than the longest record, %.3g s",
+                 problem->record);
+    return p->reason[0] != 0;
+}
+
+static bool because_of_interval(const sn_fit_constant *c, sn_fit_param *p) {
+    bool low = meets(c, p->ci95[0], c->low), high = meets(c, p->ci95[1], c->high);
+    if (low || high)
+        snprintf(p->reason, sizeof p->reason,
+                 "its 95 %% interval is open %s: it reaches the bound%s of the search",
+                 low && high ? "on both sides"
+                 : low       ? "below"
+                             : "above",
+                 low && high ? "s" : "");
+    else if (wider(c, p, wide_factor, wide_part))
+        snprintf(p->reason, sizeof p->reason, "its 95 %% interval is wide: %.3g to %.3g %s",
+                 p->ci95[0], p->ci95[1], c->param->unit);
+    return p->reason[0] != 0;
+}
+
+static void because_of_tie(const sn_problem *problem, const sn_spread *spread, int j,
+                           sn_fit_param *p) {
+    const sn_fit_constant *c = &problem->constant[problem->free[j]];
+    if (!wider(c, p, moderate_factor, moderate_part)) return;
+    int n = problem->free_count, partner = -1;
+    for (int k = 0; k < n; ++k)
+        if (k != j && (partner < 0 || fabs(spread->correlation[j * n + k]) >
+                                          fabs(spread->correlation[j * n + partner])))
+            partner = k;
+    if (partner < 0 || !(fabs(spread->correlation[j * n + partner]) > tied)) return;
+    snprintf(p->reason, sizeof p->reason,
+             "tied to %s (correlation %.3f): only a combination of the two is known",
+             problem->constant[problem->free[partner]].name, spread->correlation[j * n + partner]);
+}
+
+static void judge(const sn_problem *problem, const sn_spread *spread, int j, sn_fit_param *p) {
+    const sn_fit_constant *c = &problem->constant[problem->free[j]];
+    bool low = meets(c, p->value, c->low), high = meets(c, p->value, c->high);
+    p->at_bound = low || high;
+    p->reason[0] = 0;
+    if (p->at_bound)
+        snprintf(p->reason, sizeof p->reason, "at the %s bound of the search, %.4g %s",
+                 low ? "lower" : "upper", low ? c->low : c->high, c->param->unit);
+    else if (!because_of_time(problem, c, p) && !because_of_interval(c, p))
+        because_of_tie(problem, spread, j, p);
+    p->identifiable = p->reason[0] == 0;
+}
+
+static void describe_constants(const sn_problem *problem, sn_fit_result *result) {
+    result->param_count = problem->count;
+    for (int k = 0; k < problem->count; ++k) {
+        const sn_fit_constant *c = &problem->constant[k];
+        sn_fit_param *p = &result->param[k];
+        *p = (sn_fit_param){.fixed = !c->free, .identifiable = true, .standard_error = (double)NAN};
+        p->ci95[0] = p->ci95[1] = (double)NAN;
+        p->value = (c->in_memory ? problem->tissue.memory.value : problem->tissue.value)[c->index];
+        snprintf(p->name, sizeof p->name, "%s", c->name);
+        snprintf(p->unit, sizeof p->unit, "%s", c->param->unit);
+    }
+}
+
+static void describe_correlation(const sn_problem *problem, const sn_spread *spread,
+                                 sn_fit_result *result) {
+    int n = problem->free_count, all = problem->count;
+    memset(result->correlation, 0, sizeof result->correlation);
+    for (int k = 0; k < all; ++k) result->correlation[k * all + k] = 1.0;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            result->correlation[problem->free[i] * all + problem->free[j]] =
+                spread->correlation[i * n + j];
+    // the combination that the data know least, its small parts left out
+    result->condition = spread->condition;
+    result->weakest[0] = 0;
+    for (int j = 0; j < n; ++j) {
+        const sn_fit_constant *c = &problem->constant[problem->free[j]];
+        if (fabs(spread->weakest[j]) < 0.2) continue;
+        size_t used = strlen(result->weakest);
+        snprintf(result->weakest + used, sizeof result->weakest - used,
+                 c->param->log_scale ? "%s%.2f ln %s" : "%s%.2f %s", used ? " " : "",
+                 spread->weakest[j], c->name);
+    }
+}
+
+sn_status sn_describe(sn_problem *problem, sn_found *best, bool last, sn_fit_result *result,
+                      bool *moved) {
+    sn_spread spread;
+    *moved = false;
+    SN_TRY(sn_spread_at(problem, best, &spread));
+    sn_problem_set(problem, best->x);
+    describe_constants(problem, result);
+    describe_correlation(problem, &spread, result);
+    result->identifiable = true;
+    for (int j = 0; j < problem->free_count; ++j) {
+        const sn_fit_constant *c = &problem->constant[problem->free[j]];
+        sn_fit_param *p = &result->param[problem->free[j]];
+        p->standard_error = spread.error[j] * (c->param->log_scale ? p->value : 1.0);
+        linear_interval(c, best->x[j], spread.student * spread.error[j], p);
+        if (wider(c, p, moderate_factor, moderate_part)) {
+            double interval[2];
+            sn_found better;
+            bool improved;
+            SN_TRY(sn_profile(problem, best, &spread, j, interval, &better, &improved));
+            if (improved && !last) {
+                *best = better;
+                *moved = true;
+                return SN_OK;
+            }
+            p->profiled = !improved;
+            if (!improved) from_profile(c, interval, spread.student, p);
+        }
+        judge(problem, &spread, j, p);
+        result->identifiable = result->identifiable && p->identifiable;
+    }
+    return SN_OK;
+}

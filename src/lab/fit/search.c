@@ -1,0 +1,225 @@
+// Global search by controlled random search, local search by Levenberg-Marquardt.
+// SPDX-License-Identifier: Apache-2.0
+// Source: Kaelo & Ali, controlled random search with local mutation (NLopt); Moré's
+// Levenberg-Marquardt (MINPACK, by cminpack).
+//
+// The global stage works on the unit cube of the bounds. Every law is proportional to its constants
+// that are stresses, so their common factor is solved for at each point and the cube loses its
+// longest direction. The best points that are apart from each other start local searches. Bounds
+// become y -> (1 + sin y)/2, so that Levenberg-Marquardt is free. Its Jacobian is by differences:
+// the model is smooth, with noise of 1e-11.
+#include "lab/fit/search.h"
+
+#include <math.h>
+#include <string.h>
+
+#include <cminpack.h>
+#include <nlopt.h>
+
+enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 400 };
+static const double apart = 0.1;       // of the unit cube, largest difference of a coordinate
+static const double near_bound = 0.02; // part of the range
+static const double epsfcn = 1e-10;    // square of the relative step of the differences
+
+typedef struct cube {
+    sn_problem *problem;
+    double low[SN_FIT_PARAMS_MAX], high[SN_FIT_PARAMS_MAX]; // in the scale of the fit
+    double *residual;
+    int kept_max, kept_count;
+    sn_found kept[STARTS_MAX]; // in the cube; best first
+} cube;
+
+static void cube_bounds(cube *c) {
+    for (int j = 0; j < c->problem->free_count; ++j) {
+        const sn_fit_constant *k = &c->problem->constant[c->problem->free[j]];
+        c->low[j] = sn_problem_scaled(k, k->low);
+        c->high[j] = sn_problem_scaled(k, k->high);
+    }
+}
+
+static double distance(int n, const double *a, const double *b) {
+    double d = 0.0;
+    for (int j = 0; j < n; ++j) d = fmax(d, fabs(a[j] - b[j]));
+    return d;
+}
+
+// keeps a point if it is among the best, replacing those near it that are worse
+static void keep(cube *c, const double *z, double sum) {
+    int n = c->problem->free_count;
+    for (int i = 0; i < c->kept_count; ++i)
+        if (c->kept[i].sum <= sum && distance(n, c->kept[i].x, z) < apart) return;
+    int left = 0;
+    for (int i = 0; i < c->kept_count; ++i)
+        if (distance(n, c->kept[i].x, z) >= apart) c->kept[left++] = c->kept[i];
+    int at = left;
+    while (at > 0 && c->kept[at - 1].sum > sum) --at;
+    c->kept_count = left;
+    if (at >= c->kept_max) return;
+    if (left == c->kept_max) left--;
+    memmove(&c->kept[at + 1], &c->kept[at], (size_t)(left - at) * sizeof *c->kept);
+    memcpy(c->kept[at].x, z, (size_t)n * sizeof *z);
+    c->kept[at].sum = sum;
+    c->kept_count = left + 1;
+}
+
+static double global_objective(unsigned n, const double *z, double *gradient, void *context) {
+    cube *c = context;
+    (void)gradient;
+    double x[SN_FIT_PARAMS_MAX], scaled[SN_FIT_PARAMS_MAX];
+    for (unsigned j = 0; j < n; ++j) x[j] = c->low[j] + z[j] * (c->high[j] - c->low[j]);
+    double sum = sn_problem_scaled_sum(c->problem, x, c->residual);
+    for (unsigned j = 0; j < n; ++j)
+        scaled[j] = fmin(1.0, fmax(0.0, (x[j] - c->low[j]) / (c->high[j] - c->low[j])));
+    keep(c, scaled, sum);
+    return log(sum + 1e-300); // ranks are all that counts; the logarithm never overflows
+}
+
+static sn_status global(cube *c) {
+    unsigned n = (unsigned)c->problem->free_count;
+    double z[SN_FIT_PARAMS_MAX], zero[SN_FIT_PARAMS_MAX], one[SN_FIT_PARAMS_MAX], value;
+    for (unsigned j = 0; j < n; ++j) {
+        z[j] = 0.5;
+        zero[j] = 0.0;
+        one[j] = 1.0;
+    }
+    nlopt_opt search = nlopt_create(NLOPT_GN_CRS2_LM, n);
+    if (!search) return sn_fail(SN_E_MEMORY, "fit: no memory for the global search");
+    nlopt_srand(c->problem->def->seed);
+    nlopt_set_lower_bounds(search, zero);
+    nlopt_set_upper_bounds(search, one);
+    nlopt_set_min_objective(search, global_objective, c);
+    nlopt_set_maxeval(search, PER_CONSTANT * (int)(n + 1));
+    nlopt_optimize(search, z, &value); // whatever its end, the points kept are what we use
+    nlopt_destroy(search);
+    if (c->kept_count == 0)
+        return sn_fail(SN_E_SOLVER, "fit: the global search met no usable point");
+    return SN_OK;
+}
+
+//---- local search --------------------------------------------------------------------------------
+
+typedef struct local {
+    sn_problem *problem;
+    int count; // of constants that move
+    int moving[SN_FIT_PARAMS_MAX];
+    double x[SN_FIT_PARAMS_MAX], low[SN_FIT_PARAMS_MAX], high[SN_FIT_PARAMS_MAX];
+} local;
+
+static int local_residuals(void *context, int m, int n, const double *y, double *residual,
+                           int flag) {
+    local *l = context;
+    (void)m, (void)flag;
+    for (int j = 0; j < n; ++j) {
+        int k = l->moving[j];
+        l->x[k] = l->low[k] + 0.5 * (1.0 + sin(y[j])) * (l->high[k] - l->low[k]);
+    }
+    sn_problem_residuals(l->problem, l->x, residual);
+    return 0;
+}
+
+static void local_start(local *l, const bool *hold, const sn_found *found, double *y) {
+    sn_problem *p = l->problem;
+    memcpy(l->x, found->x, sizeof l->x);
+    for (int j = 0; j < p->free_count; ++j) {
+        const sn_fit_constant *k = &p->constant[p->free[j]];
+        l->low[j] = sn_problem_scaled(k, k->low);
+        l->high[j] = sn_problem_scaled(k, k->high);
+        if (hold && hold[j]) continue;
+        double z = (l->x[j] - l->low[j]) / (l->high[j] - l->low[j]);
+        z = fmin(1.0 - 1e-4, fmax(1e-4, z)); // off the bound, where the sine is flat
+        y[l->count] = asin(2.0 * z - 1.0);
+        l->moving[l->count++] = j;
+    }
+}
+
+sn_status sn_search_local(sn_problem *problem, const bool *hold, double enough, sn_found *found) {
+    local l = {.problem = problem};
+    double y[SN_FIT_PARAMS_MAX], diag[SN_FIT_PARAMS_MAX], qtf[SN_FIT_PARAMS_MAX];
+    double wa[3][SN_FIT_PARAMS_MAX];
+    int pivot[SN_FIT_PARAMS_MAX], calls = 0;
+    local_start(&l, hold, found, y);
+    size_t m = (size_t)problem->points, n = (size_t)l.count;
+    double *work = sn_alloc(m * (n + 2), sizeof *work);
+    if (!work) return SN_E_MEMORY;
+    double *residual = work, *wa4 = work + m, *jacobian = work + 2 * m;
+    if (n == 0) {
+        found->info = 1;
+        sn_problem_residuals(problem, found->x, residual);
+        found->sum = sn_sum_squares(problem->points, residual);
+        sn_free(work);
+        return SN_OK;
+    }
+    found->info = lmdif(local_residuals, &l, (int)m, (int)n, y, residual, enough, 1e-9, 0.0,
+                        LOCAL_CALLS, epsfcn, diag, 1, 1.0, 0, &calls, jacobian, (int)m, pivot, qtf,
+                        wa[0], wa[1], wa[2], wa4);
+    local_residuals(&l, (int)m, (int)n, y, residual, 1);
+    memcpy(found->x, l.x, sizeof found->x);
+    found->sum = sn_sum_squares(problem->points, residual);
+    sn_free(work);
+    return SN_OK;
+}
+
+// All the way from the best start. A constant that has come to a bound is set on it and held: near
+// its bound the sine is flat, and the search would creep there for ever.
+static sn_status finish(cube *c, sn_found *best) {
+    bool hold[SN_FIT_PARAMS_MAX] = {false}, any = false;
+    sn_found settled = *best, polished = *best;
+    for (int j = 0; j < c->problem->free_count; ++j) {
+        double part = (best->x[j] - c->low[j]) / (c->high[j] - c->low[j]);
+        hold[j] = part < near_bound || part > 1.0 - near_bound;
+        if (hold[j]) settled.x[j] = part < 0.5 ? c->low[j] : c->high[j];
+        any = any || hold[j];
+    }
+    if (any) {
+        SN_TRY(sn_search_local(c->problem, hold, 1e-12, &settled));
+        if (settled.sum <= best->sum * (1.0 + 1e-4)) {
+            *best = settled;
+            return SN_OK;
+        }
+    }
+    SN_TRY(sn_search_local(c->problem, NULL, 1e-12, &polished));
+    if (polished.sum <= best->sum) *best = polished;
+    return SN_OK;
+}
+
+static sn_status refine(cube *c, sn_found *best) {
+    const sn_fit_def *def = c->problem->def;
+    best->sum = (double)INFINITY;
+    for (int i = 0; i < c->kept_count; ++i) {
+        sn_found found = c->kept[i];
+        for (int j = 0; j < c->problem->free_count; ++j)
+            found.x[j] = c->low[j] + found.x[j] * (c->high[j] - c->low[j]);
+        SN_TRY(sn_search_local(c->problem, NULL, 1e-4, &found));
+        if (found.sum < best->sum) *best = found;
+        if (def->progress)
+            def->progress(def->progress_context, 0.3 + 0.4 * (i + 1) / c->kept_count,
+                          "local search");
+    }
+    return finish(c, best);
+}
+
+sn_status sn_search(sn_problem *problem, sn_found *best) {
+    const sn_fit_def *def = problem->def;
+    cube *c = sn_alloc(1, sizeof *c);
+    if (!c) return SN_E_MEMORY;
+    c->problem = problem;
+    c->kept_max = def->starts < 1 ? 1 : def->starts > STARTS_MAX ? STARTS_MAX : def->starts;
+    cube_bounds(c);
+    sn_status status = SN_E_MEMORY;
+    c->residual = sn_alloc((size_t)problem->points, sizeof *c->residual);
+    if (!c->residual) goto fail;
+    *best = (sn_found){0};
+    if (problem->free_count == 0) {
+        status = sn_search_local(problem, NULL, 1e-12, best);
+        goto fail;
+    }
+    if (def->progress) def->progress(def->progress_context, 0.0, "global search");
+    SN_TRY_GOTO(status, global(c));
+    SN_TRY_GOTO(status, refine(c, best));
+    if (best->sum >= problem->norm * 1e5)
+        status = sn_fail(SN_E_SOLVER, "fit: no constants within the bounds give a usable stress");
+fail:
+    sn_free(c->residual);
+    sn_free(c);
+    return status;
+}

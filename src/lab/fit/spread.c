@@ -1,0 +1,146 @@
+// Linearised errors of fitted constants.
+// SPDX-License-Identifier: Apache-2.0
+// Source: covariance s^2 (J^T J)^-1, s^2 = SSE/(n - p); Student's t by the expansion of Abramowitz
+// & Stegun 26.7.5; Jacobi's method for eigenvalues.
+#include <math.h>
+#include <string.h>
+
+#include "lab/fit/statistics.h"
+
+enum { N = SN_FIT_PARAMS_MAX };
+static const double difference = 1e-4; // of the scale of the fit; error 1e-8, noise 1e-11/1e-4
+
+double sn_student_975(int nu) {
+    // the expansion in 1/nu is good to 5e-4 from nu = 4 on
+    static const double few[] = {12.706205, 4.302653, 3.182446};
+    if (nu < 1) return (double)INFINITY;
+    if (nu <= 3) return few[nu - 1];
+    double z = 1.959963984540054, z2 = z * z, v = nu;
+    double g1 = z * (z2 + 1.0) / 4.0;
+    double g2 = z * ((5.0 * z2 + 16.0) * z2 + 3.0) / 96.0;
+    double g3 = z * (((3.0 * z2 + 19.0) * z2 + 17.0) * z2 - 15.0) / 384.0;
+    double g4 = z * ((((79.0 * z2 + 776.0) * z2 + 1482.0) * z2 - 1920.0) * z2 - 945.0) / 92160.0;
+    return z + (g1 + (g2 + (g3 + g4 / v) / v) / v) / v;
+}
+
+// one rotation that makes A[p][q] zero
+static void rotate(int n, double *A, double *V, int p, int q) {
+    double apq = A[p * n + q];
+    if (apq == 0.0) return;
+    double theta = 0.5 * (A[q * n + q] - A[p * n + p]) / apq;
+    double t = (theta >= 0.0 ? 1.0 : -1.0) / (fabs(theta) + hypot(theta, 1.0));
+    double c = 1.0 / hypot(t, 1.0), s = t * c;
+    for (int k = 0; k < n; ++k) {
+        double a = A[k * n + p], b = A[k * n + q];
+        A[k * n + p] = c * a - s * b;
+        A[k * n + q] = s * a + c * b;
+    }
+    for (int k = 0; k < n; ++k) {
+        double a = A[p * n + k], b = A[q * n + k];
+        A[p * n + k] = c * a - s * b;
+        A[q * n + k] = s * a + c * b;
+        double u = V[k * n + p], w = V[k * n + q];
+        V[k * n + p] = c * u - s * w;
+        V[k * n + q] = s * u + c * w;
+    }
+}
+
+void sn_eigen_symmetric(int n, double *A, double *value, double *V) {
+    memset(V, 0, (size_t)(n * n) * sizeof *V);
+    for (int i = 0; i < n; ++i) V[i * n + i] = 1.0;
+    for (int sweep = 0; sweep < 60; ++sweep) {
+        double off = 0.0, diagonal = 0.0;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) *(i == j ? &diagonal : &off) += A[i * n + j] * A[i * n + j];
+        if (off <= 1e-32 * diagonal) break;
+        for (int p = 0; p < n; ++p)
+            for (int q = p + 1; q < n; ++q) rotate(n, A, V, p, q);
+    }
+    for (int i = 0; i < n; ++i) value[i] = A[i * n + i];
+    for (int i = 0; i < n; ++i) { // rising
+        int least = i;
+        for (int j = i + 1; j < n; ++j)
+            if (value[j] < value[least]) least = j;
+        double v = value[i];
+        value[i] = value[least];
+        value[least] = v;
+        for (int k = 0; k < n && least != i; ++k) {
+            double u = V[k * n + i];
+            V[k * n + i] = V[k * n + least];
+            V[k * n + least] = u;
+        }
+    }
+}
+
+// Column j of the Jacobian in the scale of the fit. One-sided where one side is not feasible; zero
+// where neither is.
+static void jacobian_column(sn_problem *p, const sn_found *best, int j, double *column,
+                            double *work) {
+    double x[N], *plus = work, *minus = work + p->points, h[2];
+    const sn_fit_constant *c = &p->constant[p->free[j]];
+    double low = sn_problem_scaled(c, c->low), high = sn_problem_scaled(c, c->high);
+    double step = difference;
+    if (!c->param->log_scale) step *= fmax(fabs(best->x[j]), 1e-4 * (high - low));
+    memcpy(x, best->x, sizeof x);
+    x[j] = fmin(high, best->x[j] + step);
+    h[0] = x[j] - best->x[j];
+    bool above = h[0] > 0.0 && sn_problem_residuals(p, x, plus);
+    x[j] = fmax(low, best->x[j] - step);
+    h[1] = best->x[j] - x[j];
+    bool below = h[1] > 0.0 && sn_problem_residuals(p, x, minus);
+    if (!above) h[0] = 0.0;
+    if (!below) h[1] = 0.0;
+    if (!above) sn_problem_residuals(p, best->x, plus);
+    if (!below) sn_problem_residuals(p, best->x, minus);
+    for (int i = 0; i < p->points; ++i)
+        column[i] = above || below ? (plus[i] - minus[i]) / (h[0] + h[1]) : 0.0;
+}
+
+// errors and correlations from the eigenvalues of the scaled matrix
+static void invert(int n, const double *scale, double variance, double *A, sn_spread *spread) {
+    double value[N], V[N * N], covariance[N * N];
+    sn_eigen_symmetric(n, A, value, V);
+    double least = fmax(value[0], 1e-14 * value[n - 1]); // rounding: below it means 0
+    spread->condition = value[n - 1] / least;
+    for (int i = 0; i < n; ++i) spread->weakest[i] = V[i * n];
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            double sum = 0.0;
+            for (int k = 0; k < n; ++k) sum += V[i * n + k] * V[j * n + k] / fmax(value[k], least);
+            covariance[i * n + j] = sum;
+        }
+    for (int i = 0; i < n; ++i) {
+        spread->error[i] = sqrt(variance * covariance[i * n + i]) / scale[i];
+        for (int j = 0; j < n; ++j)
+            spread->correlation[i * n + j] =
+                i == j
+                    ? 1.0
+                    : covariance[i * n + j] / sqrt(covariance[i * n + i] * covariance[j * n + j]);
+    }
+}
+
+sn_status sn_spread_at(sn_problem *problem, const sn_found *best, sn_spread *spread) {
+    int n = problem->free_count, m = problem->points;
+    *spread = (sn_spread){.condition = 1.0, .student = sn_student_975(m - n)};
+    if (n == 0) return SN_OK;
+    double *J = sn_alloc((size_t)m * (size_t)(n + 2), sizeof *J);
+    if (!J) return SN_E_MEMORY;
+    double scale[N], A[N * N];
+    for (int j = 0; j < n; ++j) {
+        double *column = J + (size_t)j * (size_t)m;
+        jacobian_column(problem, best, j, column, J + (size_t)n * (size_t)m);
+        scale[j] = sqrt(sn_sum_squares(m, column));
+        // a constant that moves nothing: an error beyond any bound, and no division by zero
+        scale[j] = fmax(scale[j], 1e-12 * sqrt(problem->norm));
+    }
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            double sum = 0.0;
+            for (int k = 0; k < m; ++k)
+                sum += J[(size_t)i * (size_t)m + (size_t)k] * J[(size_t)j * (size_t)m + (size_t)k];
+            A[i * n + j] = sum / scale[i] / scale[j];
+        }
+    invert(n, scale, best->sum / (m - n), A, spread);
+    sn_free(J);
+    return SN_OK;
+}

@@ -1,0 +1,129 @@
+// Layout of a uniaxial test in time, and the choice of how a tissue is pulled.
+// SPDX-License-Identifier: Apache-2.0
+#include "lab/protocol/path.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static int by_value(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// index of t among the instants, which contain it
+static int instant_of(const sn_path *path, double t) {
+    int low = 0, high = path->count - 1;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (path->time[middle] < t)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static sn_status check_times(int n, const double *time) {
+    for (int i = 0; i < n; ++i)
+        if (!isfinite(time[i]))
+            return sn_fail(SN_E_DATA, "recorded time %d is not finite: give seconds", i + 1);
+    return SN_OK;
+}
+
+static sn_status lay_stretch(sn_path *path, const sn_history *stretch) {
+    double low = 1.0, high = 1.0;
+    for (int i = 0; i < path->count; ++i) {
+        sn_history_at(stretch, path->time[i], &path->stretch[i]);
+        low = fmin(low, path->stretch[i]);
+        high = fmax(high, path->stretch[i]);
+        if (!(path->stretch[i] > 0.0))
+            return sn_fail(SN_E_RANGE, "stretch at %g s is %g: expected more than 0", path->time[i],
+                           path->stretch[i]);
+    }
+    path->range = high - low;
+    return SN_OK;
+}
+
+sn_status sn_path_create(const sn_history *stretch, int n, const double *time, sn_path **path) {
+    SN_ASSERT(stretch && stretch->channels == 1 && n > 0 && time && path);
+    *path = NULL;
+    SN_TRY(check_times(n, time));
+    double start = stretch->time[0], end = start;
+    for (int i = 0; i < n; ++i) end = fmax(end, time[i]);
+
+    sn_status status = SN_E_MEMORY;
+    sn_path *p = sn_alloc(1, sizeof *p);
+    if (!p) return status;
+    p->time = sn_alloc((size_t)(n + stretch->count), sizeof *p->time);
+    p->stretch = sn_alloc((size_t)(n + stretch->count), sizeof *p->stretch);
+    p->record = sn_alloc((size_t)n, sizeof *p->record);
+    if (!p->time || !p->stretch || !p->record) goto fail;
+
+    int count = 0;
+    for (int i = 0; i < stretch->count; ++i)
+        if (stretch->time[i] <= end) p->time[count++] = stretch->time[i];
+    for (int i = 0; i < n; ++i)
+        if (time[i] > start) p->time[count++] = time[i];
+    qsort(p->time, (size_t)count, sizeof *p->time, by_value);
+    for (int i = 0; i < count; ++i)
+        if (p->count == 0 || p->time[i] > p->time[p->count - 1]) p->time[p->count++] = p->time[i];
+
+    SN_TRY_GOTO(status, lay_stretch(p, stretch));
+    p->records = n;
+    for (int i = 0; i < n; ++i) p->record[i] = time[i] < start ? -1 : instant_of(p, time[i]);
+    *path = p;
+    return SN_OK;
+fail:
+    sn_path_destroy(p);
+    return status;
+}
+
+void sn_path_destroy(sn_path *path) {
+    if (!path) return;
+    sn_free(path->time);
+    sn_free(path->stretch);
+    sn_free(path->record);
+    sn_free(path);
+}
+
+sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull) {
+    const sn_law *law = tissue->law;
+    if (law->kind == SN_LAW_UNIAXIAL) {
+        *pull = SN_PULL_UNIAXIAL;
+        return SN_OK;
+    }
+    if (law->kind == SN_LAW_MEMBRANE)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "law %s is a membrane: a uniaxial test needs a uniaxial or a solid law",
+                       law->name);
+    // a probe strain, alike in both lateral directions: what the stress does there decides
+    const double E[6] = {0.05, -0.04, -0.04, 0.0, 0.0, 0.0};
+    double S[6];
+    sn_law_solid(law, tissue->value, tissue->terms, 1, E, NULL, S, NULL);
+    double size = fmax(fabs(S[0]), fabs(S[1])), tiny = 1e-10 * size;
+    if (!isfinite(size) || !(size > 0.0))
+        return sn_fail(SN_E_RANGE, "law %s gives no usable stress at a stretch of 1.05", law->name);
+    if (fabs(S[3]) > tiny || fabs(S[4]) > tiny || fabs(S[5]) > tiny)
+        return sn_fail(
+            SN_E_UNSUPPORTED,
+            "law %s shears when it is pulled along its first axis: a uniaxial test needs "
+            "axes that stay at right angles",
+            law->name);
+    sn_moduli moduli;
+    law->moduli(tissue->value, tissue->terms, &moduli);
+    bool alike = fabs(S[1] - S[2]) <= tiny;
+    *pull = isinf(moduli.bulk) && alike ? SN_PULL_CLOSED : SN_PULL_LATERAL;
+    return SN_OK;
+}
+
+sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
+                         const sn_exponentials *e, int level, double *stress) {
+    // stress of a step under a Voigt memory is an impulse: no number
+    if (e->viscous > 0.0 && path->stretch[0] != 1.0)
+        return sn_fail(SN_E_RANGE,
+                       "a step to stretch %g at %g s under memory %s has infinite stress: start at "
+                       "stretch 1 and use a ramp",
+                       path->stretch[0], path->time[0], tissue->memory.law->name);
+    if (pull == SN_PULL_LATERAL) return sn_path_stress_lateral(path, tissue, e, level, stress);
+    return sn_path_stress_known(path, tissue, pull, e, level, stress);
+}
