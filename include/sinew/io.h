@@ -40,7 +40,11 @@ SN_API sn_status sn_tissue_write(const char *path, const sn_tissue *tissue, cons
 /// Reads a case with its tissues and mesh (paths relative to the case file) and checks it.
 SN_API sn_status sn_case_read(const char *path, sn_case **c);
 /// Reads a Gmsh mesh, ASCII 2.2 or 4.1: tetrahedra, physical volumes as regions, physical surfaces
-/// as surfaces. `scale` brings its coordinates to metres. Calls sn_mesh_finish().
+/// as surfaces. `scale` brings its coordinates to metres. Calls sn_mesh_finish(). Groups without a
+/// name are "volume_3" and "surface_7", cells of no physical volume the region "body"; tetrahedra of
+/// second order keep their corners.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_UNSUPPORTED (binary, other versions, other elements),
+///         SN_E_MESH, SN_E_RANGE (scale), SN_E_MEMORY.
 SN_API sn_status sn_mesh_read_gmsh(const char *path, double scale, sn_mesh **mesh);
 
 //---- fields --------------------------------------------------------------------------------------

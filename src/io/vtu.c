@@ -1,0 +1,228 @@
+// A ParaView collection: one .vtu a frame, and a .pvd that lists the frames written so far.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Source: the VTK XML file formats, UnstructuredGrid and Collection.
+//
+// Every frame is a whole file: rest positions, tetrahedra, the region of each cell, the fields.
+// Arrays stand inline as base64 behind a 64-bit byte count, so the values that are read back are
+// the values that were written, bit for bit. Positions are those at rest: "displacement" moves
+// them (Warp By Vector).
+//
+// Name is the field's name alone, because scripts look arrays up by it (meshio's
+// point_data["displacement"], ParaView's calculator). The unit goes with the array as VTK's own key
+// UNITS_LABEL, and a symmetric tensor has its six components in VTK's order, xx yy zz xy yz xz.
+#include <stdint.h>
+#include <string.h>
+
+#include "io/buffer.h"
+#include "io/text.h"
+#include "sinew/io.h"
+
+#define VTK_TETRA 10
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define BYTE_ORDER_NAME "BigEndian"
+#else
+#define BYTE_ORDER_NAME "LittleEndian"
+#endif
+
+struct sn_vtu {
+    char *folder, *name;
+    size_t node_count, cell_count;
+    int frames;
+    sn_buffer grid; ///< Points and Cells, the same in every frame
+    sn_buffer regions;
+    sn_buffer list; ///< the DataSet lines of the collection
+    sn_buffer file; ///< the file being written
+    sn_buffer path;
+};
+
+static char *copy_text(const char *text) {
+    size_t bytes = strlen(text) + 1;
+    char *copy = sn_alloc(bytes, 1);
+    if (copy) memcpy(copy, text, bytes);
+    return copy;
+}
+
+// The byte count and the values as one base64 text. Eight bytes of count and the first of the
+// values are three whole groups, so that the rest can follow without being copied.
+static void add_values(sn_buffer *out, const void *values, size_t bytes) {
+    unsigned char head[9];
+    uint64_t count = bytes;
+    memcpy(head, &count, 8);
+    if (bytes) head[8] = *(const unsigned char *)values;
+    sn_buffer_base64(out, head, bytes ? 9 : 8);
+    if (bytes) sn_buffer_base64(out, (const unsigned char *)values + 1, bytes - 1);
+}
+
+static void add_array(sn_buffer *out, const char *type, const char *name, int components,
+                      const void *values, size_t bytes) {
+    sn_buffer_print(out, "<DataArray type=\"%s\" Name=\"", type);
+    sn_buffer_escape(out, name);
+    sn_buffer_print(out, "\" NumberOfComponents=\"%d\" format=\"binary\">", components);
+    add_values(out, values, bytes);
+    sn_buffer_text(out, "</DataArray>\n");
+}
+
+static sn_status add_grid(sn_buffer *out, const sn_mesh *mesh) {
+    size_t cells = (size_t)mesh->cell_count;
+    int32_t *ends = sn_alloc(cells, sizeof *ends);
+    uint8_t *types = sn_alloc(cells, 1);
+    if (ends && types) {
+        for (size_t c = 0; c < cells; c++) ends[c] = (int32_t)(4 * (c + 1));
+        memset(types, VTK_TETRA, cells);
+        sn_buffer_text(out, "<Points>\n");
+        add_array(out, "Float64", "Points", 3, mesh->node,
+                  3 * (size_t)mesh->node_count * sizeof(double));
+        sn_buffer_text(out, "</Points>\n<Cells>\n");
+        add_array(out, "Int32", "connectivity", 1, mesh->cell, 4 * cells * sizeof(int));
+        add_array(out, "Int32", "offsets", 1, ends, cells * sizeof *ends);
+        add_array(out, "UInt8", "types", 1, types, cells);
+        sn_buffer_text(out, "</Cells>\n");
+    }
+    sn_status status = ends && types ? out->status : SN_E_MEMORY;
+    sn_free(ends);
+    sn_free(types);
+    return status;
+}
+
+// Numbers of regions as a field, their names as a remark.
+static void add_regions(sn_buffer *out, const sn_mesh *mesh) {
+    add_array(out, "Int32", "region", 1, mesh->region, (size_t)mesh->cell_count * sizeof(int));
+    sn_buffer_text(out, "<!-- regions:");
+    for (int r = 0; r < mesh->region_count; r++) {
+        sn_buffer_print(out, " %d ", r);
+        // a comment ends at "--": a name cannot be allowed to hold one
+        for (const char *at = mesh->region_name[r]; *at; at++) {
+            char mark[2] = {*at == '-' ? '_' : *at, 0};
+            sn_buffer_escape(out, mark);
+        }
+        sn_buffer_text(out, r + 1 < mesh->region_count ? "," : " ");
+    }
+    sn_buffer_text(out, "-->\n");
+}
+
+sn_status sn_vtu_create(const char *folder, const char *name, const sn_mesh *mesh, sn_vtu **vtu) {
+    SN_ASSERT(sizeof(int) == sizeof(int32_t));
+    *vtu = NULL;
+    sn_vtu *made = sn_alloc(1, sizeof *made);
+    if (!made) return SN_E_MEMORY;
+    sn_status status = SN_E_MEMORY;
+    made->node_count = (size_t)mesh->node_count;
+    made->cell_count = (size_t)mesh->cell_count;
+    made->folder = copy_text(folder);
+    made->name = copy_text(name);
+    if (!made->folder || !made->name) goto fail;
+    SN_TRY_GOTO(status, add_grid(&made->grid, mesh));
+    add_regions(&made->regions, mesh);
+    SN_TRY_GOTO(status, made->regions.status);
+    *vtu = made;
+    return SN_OK;
+fail:
+    sn_vtu_destroy(made);
+    return status;
+}
+
+void sn_vtu_destroy(sn_vtu *vtu) {
+    if (!vtu) return;
+    sn_free(vtu->folder);
+    sn_free(vtu->name);
+    sn_buffer_free(&vtu->grid);
+    sn_buffer_free(&vtu->regions);
+    sn_buffer_free(&vtu->list);
+    sn_buffer_free(&vtu->file);
+    sn_buffer_free(&vtu->path);
+    sn_free(vtu);
+}
+
+static void add_field(sn_buffer *out, const sn_field *field, size_t points) {
+    SN_ASSERT(field->components >= 1);
+    sn_buffer_text(out, "<DataArray type=\"Float64\" Name=\"");
+    sn_buffer_escape(out, field->name);
+    sn_buffer_print(out, "\" NumberOfComponents=\"%d\" format=\"binary\">", field->components);
+    add_values(out, field->value, points * (size_t)field->components * sizeof(double));
+    if (field->unit[0]) { // after the values: a reader takes the text before the first child
+        sn_buffer_text(out, "\n<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">");
+        sn_buffer_escape(out, field->unit);
+        sn_buffer_text(out, "</InformationKey>\n");
+    }
+    sn_buffer_text(out, "</DataArray>\n");
+}
+
+static void add_fields(sn_vtu *vtu, const sn_frame *frame, sn_place place) {
+    for (int f = 0; f < frame->field_count; f++)
+        if (frame->fields[f].place == place)
+            add_field(&vtu->file, &frame->fields[f],
+                      place == SN_ON_NODES ? vtu->node_count : vtu->cell_count);
+}
+
+static void add_head(sn_buffer *out, const char *type) {
+    sn_buffer_print(out,
+                    "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<VTKFile type=\"%s\" "
+                    "version=\"1.0\" byte_order=\"" BYTE_ORDER_NAME "\" header_type=\"UInt64\">\n",
+                    type);
+}
+
+static void add_time(sn_buffer *out, double time) {
+    char text[32];
+    sn_number_print(time, 6, text);
+    sn_buffer_text(out, text);
+}
+
+static void fill_frame(sn_vtu *vtu, const sn_frame *frame) {
+    sn_buffer *out = &vtu->file;
+    out->size = 0;
+    add_head(out, "UnstructuredGrid");
+    sn_buffer_text(out, "<UnstructuredGrid>\n<FieldData>\n<DataArray type=\"Float64\" "
+                        "Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">");
+    add_time(out, frame->time);
+    sn_buffer_print(out,
+                    "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%zu\" "
+                    "NumberOfCells=\"%zu\">\n",
+                    vtu->node_count, vtu->cell_count);
+    if (vtu->grid.size) sn_buffer_add(out, vtu->grid.text, vtu->grid.size);
+    sn_buffer_text(out, "<PointData>\n");
+    add_fields(vtu, frame, SN_ON_NODES);
+    sn_buffer_text(out, "</PointData>\n<CellData>\n");
+    sn_buffer_add(out, vtu->regions.text, vtu->regions.size);
+    add_fields(vtu, frame, SN_ON_CELLS);
+    sn_buffer_text(out, "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+}
+
+static void fill_collection(sn_vtu *vtu) {
+    sn_buffer *out = &vtu->file;
+    out->size = 0;
+    add_head(out, "Collection");
+    sn_buffer_text(out, "<Collection>\n");
+    sn_buffer_add(out, vtu->list.text, vtu->list.size);
+    sn_buffer_text(out, "</Collection>\n</VTKFile>\n");
+}
+
+static sn_status write_file(sn_vtu *vtu) {
+    if (vtu->file.status != SN_OK || vtu->path.status != SN_OK)
+        return sn_fail(SN_E_MEMORY, "%s/%s: out of memory for a frame", vtu->folder, vtu->name);
+    return sn_text_write(vtu->path.text, vtu->file.text, vtu->file.size);
+}
+
+sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
+    fill_frame(vtu, frame);
+    vtu->path.size = 0;
+    sn_buffer_print(&vtu->path, "%s/%s_%04d.vtu", vtu->folder, vtu->name, vtu->frames);
+    SN_TRY(write_file(vtu));
+
+    size_t before = vtu->list.size;
+    sn_buffer_text(&vtu->list, "<DataSet timestep=\"");
+    add_time(&vtu->list, frame->time);
+    sn_buffer_text(&vtu->list, "\" part=\"0\" file=\"");
+    sn_buffer_escape(&vtu->list, vtu->name);
+    sn_buffer_print(&vtu->list, "_%04d.vtu\"/>\n", vtu->frames);
+    if (vtu->list.status != SN_OK) return vtu->list.status;
+    fill_collection(vtu);
+    vtu->path.size = 0;
+    sn_buffer_print(&vtu->path, "%s/%s.pvd", vtu->folder, vtu->name);
+    sn_status status = write_file(vtu);
+    if (status == SN_OK)
+        vtu->frames++;
+    else
+        vtu->list.size = before;
+    return status;
+}
