@@ -41,9 +41,10 @@ SN_API sn_status sn_tissue_write(const char *path, const sn_tissue *tissue, cons
 SN_API sn_status sn_case_read(const char *path, sn_case **c);
 /// Reads a Gmsh mesh, ASCII 2.2 or 4.1: tetrahedra, physical volumes as regions, physical surfaces
 /// as surfaces. `scale` brings its coordinates to metres. Calls sn_mesh_finish(). Groups without a
-/// name are "volume_3" and "surface_7", cells of no physical volume the region "body"; tetrahedra of
-/// second order keep their corners.
-/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_UNSUPPORTED (binary, other versions, other elements),
+/// name are "volume_3" and "surface_7", cells of no physical volume the region "body"; tetrahedra
+/// of second order keep their corners.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_UNSUPPORTED (binary, other versions, other
+/// elements),
 ///         SN_E_MESH, SN_E_RANGE (scale), SN_E_MEMORY.
 SN_API sn_status sn_mesh_read_gmsh(const char *path, double scale, sn_mesh **mesh);
 
@@ -92,6 +93,7 @@ typedef struct sn_plot {
     const char *title, *x_label, *y_label; ///< labels carry units
     const char *caption;                   ///< Nullable
     bool log_x, log_y;
+    double x_scale, y_scale; ///< values are multiplied by these, to fit the labels' units; 0: 1
     int line_count;
     const sn_line *line; ///< borrowed                             (line_count)
 } sn_plot;
@@ -106,6 +108,7 @@ typedef struct sn_body {
     const double *displacement; ///< m                             (nodes x 3)
     const double *value;        ///< painted                       (nodes)
     double value_max;           ///< top of the colour scale; 0: the largest value
+    double value_scale;         ///< numbers on the scale are multiplied by this; 0: 1
 } sn_body;
 /// Bodies side by side, turned together.
 SN_API void sn_report_bodies(sn_report *report, int count, const sn_body *bodies,

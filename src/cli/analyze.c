@@ -17,12 +17,11 @@ static void say(const analysis *a, const char *what, const char *value, const ch
     if (!a->quiet) printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
 }
 
-static void stress_plot(sn_report *report, const sn_curve *curve, const char *title, int lines,
-                        const sn_line *line) {
-    (void)curve;
+static void stress_plot(sn_report *report, const char *title, int lines, const sn_line *line) {
     sn_report_plot(report, &(sn_plot){.title = title,
                                       .x_label = "stretch [1]",
-                                      .y_label = "nominal stress [Pa]",
+                                      .y_label = "nominal stress [kPa]",
+                                      .y_scale = 1e-3,
                                       .line_count = lines,
                                       .line = line});
 }
@@ -30,15 +29,16 @@ static void stress_plot(sn_report *report, const sn_curve *curve, const char *ti
 //---- tensile -------------------------------------------------------------------------------------
 
 static json_t *tensile_json(const sn_tensile *r) {
-    return json_pack(
-        "{s:o, s:s, s:o, s:o, s:o, s:s*, s:o, s:o, s:o, s:{s:o, s:o, s:o}}", "youngs_modulus_Pa",
-        cli_number(r->youngs_modulus), "modulus_method", r->modulus_method, "toe_modulus_Pa",
-        cli_number(r->toe_modulus), "yield_stress_Pa", cli_number(r->yield_stress), "yield_strain",
-        cli_number(r->yield_strain), "reason", *r->reason ? r->reason : NULL,
-        "ultimate_tensile_strength_Pa", cli_number(r->ultimate_tensile_strength),
-        "strain_at_ultimate", cli_number(r->strain_at_ultimate), "work_to_failure_J_per_m3",
-        cli_number(r->work_to_failure), "slope_stress", "B", cli_number(r->B), "C_Pa",
-        cli_number(r->C), "r_squared", cli_number(r->slope_r_squared));
+    return json_pack("{s:o, s:s, s:o, s:o, s:o, s:o, s:s*, s:o, s:o, s:o, s:{s:o, s:o, s:o}}",
+                     "youngs_modulus_Pa", cli_number(r->youngs_modulus), "modulus_method",
+                     r->modulus_method, "toe_modulus_Pa", cli_number(r->toe_modulus),
+                     "yield_stress_Pa", cli_number(r->yield_stress), "yield_strain",
+                     cli_number(r->yield_strain), "reason", *r->reason ? r->reason : NULL,
+                     "ultimate_tensile_strength_Pa", cli_number(r->ultimate_tensile_strength),
+                     "strain_at_ultimate", cli_number(r->strain_at_ultimate),
+                     "work_to_failure_J_per_m3", cli_number(r->work_to_failure), "slope_stress",
+                     "B", cli_number(r->B), "C_Pa", cli_number(r->C), "r_squared",
+                     cli_number(r->slope_r_squared));
 }
 
 static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
@@ -47,6 +47,7 @@ static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
     a->json = tensile_json(&r);
     say(a, "Young's modulus", cli_show(r.youngs_modulus, "Pa"), r.modulus_method);
     say(a, "toe modulus", cli_show(r.toe_modulus, "Pa"), "");
+    say(a, "largest slope", cli_show(r.max_slope_modulus, "Pa"), "");
     say(a, "yield stress, 0.2 % offset", cli_show(r.yield_stress, "Pa"), r.reason);
     say(a, "ultimate tensile strength", cli_show(r.ultimate_tensile_strength, "Pa"), "");
     say(a, "strain at ultimate", cli_show(r.strain_at_ultimate, "1"), "");
@@ -73,13 +74,13 @@ static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
                            work,
                            "slope against stress (13)",
                            slope};
-    sn_report_table(a->report, 7, 2, cells, r.modulus_method);
+    sn_report_table(a->report, 8, 2, cells, r.modulus_method);
     if (*r.reason) sn_report_text(a->report, "No yield stress: %s", r.reason);
     int n = r.window_last - r.window_first + 1;
     sn_line lines[] = {{"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
                        {"window of the modulus", SN_LINE, 1, n, curve->stretch + r.window_first,
                         curve->stress + r.window_first}};
-    stress_plot(a->report, curve, "Stress against stretch", 2, lines);
+    stress_plot(a->report, "Stress against stretch", 2, lines);
     return SN_OK;
 }
 
@@ -88,6 +89,7 @@ static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
 static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
     sn_cycles r;
     SN_TRY(sn_reduce_cyclic(curve, &r));
+    if (*r.remarks) say(a, "data", r.remarks, "");
     json_t *cycles = json_array();
     for (int i = 0; i < r.count; i++) {
         const sn_cycle *c = &r.cycle[i];
@@ -106,7 +108,7 @@ static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
                         "hysteresis = loop area / area under the loading curve, nominal stress");
     if (a->report) {
         sn_line line = {"measured", SN_LINE, 0, curve->count, curve->stretch, curve->stress};
-        stress_plot(a->report, curve, "Cycles", 1, &line);
+        stress_plot(a->report, "Cycles", 1, &line);
         for (int i = 0; i < r.count; i++)
             sn_report_text(a->report,
                            "Cycle %d: hysteresis %.4f (loop area %.4g J/m3 over loading area "
@@ -150,12 +152,13 @@ static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
     sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stress};
     sn_report_plot(a->report, &(sn_plot){.title = "Stress over time",
                                          .x_label = "time [s]",
-                                         .y_label = "nominal stress [Pa]",
+                                         .y_label = "nominal stress [kPa]",
+                                         .y_scale = 1e-3,
                                          .log_x = true,
                                          .line_count = 1,
                                          .line = &line});
     stress_plot(
-        a->report, curve, "Stress against stretch", 1,
+        a->report, "Stress against stretch", 1,
         &(sn_line){"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress});
     return SN_OK;
 }

@@ -51,9 +51,9 @@ static void fill_row(const sn_comparison_model *m, char text[COLUMNS][CELL]) {
 
 // header, reference, models; rows * COLUMNS strings
 static int fill_table(const sn_comparison *r, char text[][COLUMNS][CELL]) {
-    static const char *const header[COLUMNS] = {
-        "model",      "displacement rms", "displacement max", "reaction rms",
-        "stress rms", "energy",           "wall time",        "real-time factor"};
+    static const char *const header[COLUMNS] = {"model",     "displ. rms",      "displ. max",
+                                                "force rms", "stress rms",      "energy",
+                                                "wall time", "real-time factor"};
     for (int k = 0; k < COLUMNS; k++) snprintf(text[0][k], CELL, "%s", header[k]);
     fill_row(&r->reference, text[1]);
     for (int m = 0; m < r->model_count; m++) fill_row(&r->model[m], text[2 + m]);
@@ -83,13 +83,15 @@ static void force_plot(sn_report *report, const sn_comparison *r, int first) {
         line[n++] = (sn_line){r->model[m].name, SN_DASHED,          m + 1,
                               h->rows,          h->series[0].value, h->series[best].value};
     }
-    char title[SN_NAME_MAX + 32], label[64];
+    char title[SN_NAME_MAX + 32], label[SN_NAME_MAX + 16];
     const sn_series *s = &truth->series[best];
+    bool is_force = strcmp(s->unit, "N") == 0;
     snprintf(title, sizeof title, "%s over time", s->name);
-    snprintf(label, sizeof label, "%s [%s]", s->name, s->unit);
+    snprintf(label, sizeof label, "%s [%s]", s->name, is_force ? "N" : "mm");
     sn_report_plot(report, &(sn_plot){.title = title,
                                       .x_label = "time [s]",
                                       .y_label = label,
+                                      .y_scale = is_force ? 1 : 1e3,
                                       .line_count = n,
                                       .line = line});
 }
@@ -105,9 +107,10 @@ static void cost_plot(sn_report *report, const sn_comparison *r) {
     }
     sn_report_plot(report, &(sn_plot){.title = "Error against cost",
                                       .x_label = "wall time [s]",
-                                      .y_label = "displacement error, rms [1]",
+                                      .y_label = "displacement error, rms [%]",
                                       .log_x = true,
                                       .log_y = true,
+                                      .y_scale = 100,
                                       .line_count = n,
                                       .line = line});
 }
@@ -121,7 +124,8 @@ static void bodies(sn_report *report, const sn_case *c, const sn_comparison *r) 
         if (!model->displacement) continue;
         for (int i = 0; i < c->mesh->node_count; i++) top = fmax(top, model->error[i]);
         body[n++] = (sn_body){
-            model->name, "displacement error [m]", c->mesh, model->displacement, model->error, 0};
+            model->name, "displacement error [mm]", c->mesh, model->displacement, model->error, 0,
+            1e3};
     }
     for (int k = 0; k < n; k++) body[k].value_max = top;
     if (n > 0)
@@ -178,7 +182,7 @@ static void print_table(const sn_case *c, const sn_comparison *r) {
         for (int k = 1; k < COLUMNS; k++) {
             // the dash for "not known" is three bytes and one column
             int wide = strchr(text[i][k], '\xe2') || strchr(text[i][k], '\xc2') ? 1 : 0;
-            printf(" %*s", 16 + wide + (text[i][k][0] == '\xe2' ? 1 : 0), text[i][k]);
+            printf(" %*s", 12 + wide + (text[i][k][0] == '\xe2' ? 1 : 0), text[i][k]);
         }
         printf("\n");
     }

@@ -219,10 +219,6 @@ static int run(const cli_command *command, int argc, char **argv) {
         return cli_refuse("fit: %d curves given, at most %d", arguments.count, SN_FIT_CURVES_MAX);
     if (!request.elastic)
         return cli_refuse("fit: --elastic is missing, e.g. --elastic exponential");
-    if (request.terms > SN_FIT_PARAMS_MAX / 2 - 4)
-        return cli_refuse("fit: --terms is %d, at most %d", request.terms,
-                          SN_FIT_PARAMS_MAX / 2 - 4);
-
     fit_outcome outcome = {.bulk_ratio = request.bulk_ratio};
     outcome.data = sn_alloc(1, sizeof *outcome.data);
     outcome.fit = sn_alloc(1, sizeof *outcome.fit);

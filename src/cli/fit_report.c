@@ -26,6 +26,11 @@ static bool compress(const fit_outcome *o, sn_exponentials *e) {
                               e) == SN_OK;
 }
 
+// a constant may be infinite: the bulk modulus of an incompressible specimen
+static const char *shown_value(const sn_fit_param *p) {
+    return isinf(p->value) ? "incompressible" : cli_show(p->value, p->unit);
+}
+
 //---- JSON ----------------------------------------------------------------------------------------
 
 static json_t *parameters_json(const sn_fit_result *f, json_t *bounds, json_t *reasons) {
@@ -113,7 +118,7 @@ void fit_print(const fit_outcome *o) {
            cli_show(f->rmse, "Pa"), 100 * f->nrmse);
     for (int k = 0; k < f->param_count; k++) {
         const sn_fit_param *p = &f->param[k];
-        printf("  %-10s %-14s", p->name, cli_show(p->value, p->unit));
+        printf("  %-10s %-14s", p->name, shown_value(p));
         if (p->fixed)
             printf(" held\n");
         else
@@ -149,7 +154,7 @@ static void parameter_table(sn_report *report, const sn_fit_result *f) {
     cells[n++] = "determined by the data";
     for (int k = 0; k < f->param_count; k++) {
         const sn_fit_param *p = &f->param[k];
-        snprintf(text[k][0], sizeof text[k][0], "%s", cli_show(p->value, p->unit));
+        snprintf(text[k][0], sizeof text[k][0], "%s", shown_value(p));
         snprintf(text[k][1], sizeof text[k][1], "%s … %s", cli_show(p->ci95[0], p->unit),
                  cli_show(p->ci95[1], p->unit));
         snprintf(text[k][2], sizeof text[k][2], "%s", p->identifiable ? "yes" : p->reason);
@@ -222,7 +227,8 @@ static void fit_plot(sn_report *report, const fit_outcome *o, bool over_time, bo
                                        : over_time ? "Stress over time"
                                                    : "Stress against stretch",
                               .x_label = over_time ? "time [s]" : "stretch [1]",
-                              .y_label = "nominal stress [Pa]",
+                              .y_label = "nominal stress [kPa]",
+                              .y_scale = 1e-3,
                               .caption = "Points: measured. Lines: model, through the recorded "
                                          "history.",
                               .log_x = over_time,
@@ -248,7 +254,8 @@ static void residual_plot(sn_report *report, const fit_outcome *o) {
     }
     sn_report_plot(report, &(sn_plot){.title = "Residuals",
                                       .x_label = "time [s]",
-                                      .y_label = "measured - fitted [Pa]",
+                                      .y_label = "measured - fitted [kPa]",
+                                      .y_scale = 1e-3,
                                       .log_x = true,
                                       .line_count = o->data->count,
                                       .line = line});

@@ -68,8 +68,8 @@ static void history_plots(sn_report *report, const sn_record *history) {
         char title[SN_NAME_MAX + 16], label[32];
         const sn_series *s = &history->series[k];
         snprintf(title, sizeof title, "%.*s", (int)strlen(s->name) - 3, s->name);
-        snprintf(label, sizeof label, "%s [%s]", strcmp(s->unit, "N") ? "displacement" : "force",
-                 s->unit);
+        bool force = strcmp(s->unit, "N") == 0;
+        snprintf(label, sizeof label, "%s", force ? "force [N]" : "displacement [mm]");
         sn_line line[3];
         for (int d = 0; d < 3; d++)
             line[d] =
@@ -78,6 +78,7 @@ static void history_plots(sn_report *report, const sn_record *history) {
         sn_report_plot(report, &(sn_plot){.title = title,
                                           .x_label = "time [s]",
                                           .y_label = label,
+                                          .y_scale = force ? 1 : 1e3,
                                           .line_count = 3,
                                           .line = line});
     }
@@ -128,7 +129,7 @@ static sn_status write_report(const char *path, const sn_case *c, const sn_run_s
         for (int i = 0; i < r->nodes; i++)
             magnitude[i] = hypot(hypot(r->displacement[3 * i], r->displacement[3 * i + 1]),
                                  r->displacement[3 * i + 2]);
-        sn_body body = {c->name, "displacement [m]", c->mesh, r->displacement, magnitude, 0};
+        sn_body body = {c->name, "displacement [mm]", c->mesh, r->displacement, magnitude, 0, 1e3};
         sn_report_bodies(report, 1, &body, "The body at the last output time. Drag to turn it.");
         history_plots(report, history);
         status = sn_report_write(report, path);

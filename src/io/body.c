@@ -114,8 +114,9 @@ static void add_values(sn_buffer *page, const skin *s, unsigned char *bytes) {
         long number = isfinite(share) ? lround(TOP_VALUE * fmin(fmax(share, 0), 1)) : NO_VALUE;
         put(bytes + 2 * (size_t)k, (unsigned long)number, 2);
     }
-    sn_buffer_print(page, " data-low=\"%.6g\" data-high=\"%.6g\" data-over=\"%d\"", low, top,
-                    high > top * (1 + 1e-9));
+    double scale = s->body->value_scale != 0 ? s->body->value_scale : 1;
+    sn_buffer_print(page, " data-low=\"%.6g\" data-high=\"%.6g\" data-over=\"%d\"", low * scale,
+                    top * scale, high > top * (1 + 1e-9));
     add_attribute(page, "values", bytes, 2 * (size_t)s->node_count);
 }
 

@@ -375,7 +375,7 @@ static void add_values(sn_buffer *page, const figure *f) {
     sn_buffer_text(page, "</tbody>\n</table></div>\n");
 }
 
-void sn_report_plot(sn_report *report, const sn_plot *plot) {
+static void draw(sn_report *report, const sn_plot *plot) {
     sn_buffer *page = &report->page;
     sn_buffer script = {0}, svg = {0};
     char reason[SN_TEXT_MAX], prefix[32];
@@ -399,4 +399,35 @@ void sn_report_plot(sn_report *report, const sn_plot *plot) {
     sn_report_end_figure(report, plot->caption ? plot->caption : title);
     sn_buffer_free(&script);
     sn_buffer_free(&svg);
+}
+
+static double *scaled(const double *values, int count, double scale) {
+    double *copy = sn_alloc((size_t)count, sizeof *copy);
+    for (int i = 0; copy && i < count; i++) copy[i] = scale * values[i];
+    return copy;
+}
+
+void sn_report_plot(sn_report *report, const sn_plot *plot) {
+    double x_scale = plot->x_scale != 0 ? plot->x_scale : 1;
+    double y_scale = plot->y_scale != 0 ? plot->y_scale : 1;
+    sn_line *line = sn_alloc((size_t)plot->line_count, sizeof *line);
+    bool enough = line != NULL;
+    for (int k = 0; enough && k < plot->line_count; k++) {
+        line[k] = plot->line[k];
+        line[k].x = scaled(plot->line[k].x, line[k].count, x_scale);
+        line[k].y = scaled(plot->line[k].y, line[k].count, y_scale);
+        enough = line[k].x && line[k].y;
+    }
+    sn_plot copy = *plot;
+    copy.line = line;
+    if (enough)
+        draw(report, &copy);
+    else
+        report->page.status = SN_E_MEMORY;
+    for (int k = 0; line && k < plot->line_count; k++) {
+        // a line that was not reached yet, or still borrows, is not ours to free
+        if (line[k].x != plot->line[k].x) sn_free((void *)line[k].x);
+        if (line[k].y != plot->line[k].y) sn_free((void *)line[k].y);
+    }
+    sn_free(line);
 }

@@ -22,7 +22,7 @@ sn_continuum_def sn_continuum_def_default(void) {
                               .analysis = SN_ANALYSIS_QUASI_STATIC,
                               .steps = 20,
                               .tolerance = 1e-8,
-                              .memory_tolerance = 1e-3};
+                              .memory_tolerance = 1e-4};
 }
 
 sn_status sn_case_create(sn_case **c) {

@@ -108,17 +108,19 @@ static void add_plots(sn_report *report, const char *word) {
         z[i] = i == 30 ? HUGE_VAL : exp(-0.3 * i);
     }
     sn_line lines[] = {{word, SN_POINTS, 0, 60, x, y}, {"model", SN_LINE, 9, 60, x, z}};
-    sn_report_plot(report, &(sn_plot){word, word, word, word, false, false, 2, lines});
+    sn_report_plot(report, &(sn_plot){word, word, word, word, false, false, 0, 0, 2, lines});
     lines[0].style = SN_LINE_POINTS;
     lines[1].style = SN_DASHED;
-    sn_report_plot(report, &(sn_plot){"log", "time [s]", "G [1]", NULL, true, true, 2, lines});
+    sn_report_plot(report,
+                   &(sn_plot){"log", "time [s]", "G [1]", NULL, true, true, 0, 0, 2, lines});
     lines[0].style = lines[1].style = SN_BARS;
-    sn_report_plot(report, &(sn_plot){"bars", "case", "error [%]", NULL, false, false, 2, lines});
+    sn_report_plot(report,
+                   &(sn_plot){"bars", "case", "error [%]", NULL, false, false, 0, 0, 2, lines});
     lines[0].label = lines[1].label = NULL;
     lines[0].count = lines[1].count = 1; // one point: axes of no length
-    sn_report_plot(report, &(sn_plot){"one", "x", "y", NULL, false, false, 2, lines});
+    sn_report_plot(report, &(sn_plot){"one", "x", "y", NULL, false, false, 0, 0, 2, lines});
     lines[0].count = lines[1].count = 0;
-    sn_report_plot(report, &(sn_plot){"empty", "x", "y", NULL, true, false, 2, lines});
+    sn_report_plot(report, &(sn_plot){"empty", "x", "y", NULL, true, false, 0, 0, 2, lines});
 }
 
 static void test_plots(void **state) {
@@ -163,7 +165,7 @@ static void test_many_points(void **state) {
     sn_line line = {"wave", SN_LINE, 0, COUNT, x, y};
     sn_report *report;
     CHECK_OK(sn_report_create("many", &report));
-    sn_report_plot(report, &(sn_plot){"many", "x", "y", NULL, false, false, 1, &line});
+    sn_report_plot(report, &(sn_plot){"many", "x", "y", NULL, false, false, 0, 0, 1, &line});
     char *text = write_and_read(report, "many.html");
     // the curve is less than 5 axes long in each direction, a point every 1/3000 of one at most,
     // and a point takes less than 20 bytes
@@ -287,8 +289,8 @@ static void test_bodies(void **state) {
         value[n] = 40 * mesh[0]->node[3 * n + 2];   // 0 … 0.8
     }
     value[0] = (double)NAN;
-    bodies[0] = (sn_body){hostile_text, hostile_text, mesh[0], motion, value, 0};
-    bodies[1] = (sn_body){"second", "error [mm]", mesh[1], still, value, 0.4};
+    bodies[0] = (sn_body){hostile_text, hostile_text, mesh[0], motion, value, 0, 0};
+    bodies[1] = (sn_body){"second", "error [mm]", mesh[1], still, value, 0.4, 0};
     sn_report *report;
     CHECK_OK(sn_report_create("bodies", &report));
     sn_report_bodies(report, 2, bodies, hostile_text);
@@ -382,7 +384,7 @@ static void test_smooth_body(void **state) {
         for (int i = 0; i < 3 && most > 0; i++) x[i] *= most / sqrt(length);
     }
     double *zero = calloc(3 * (size_t)mesh->node_count, sizeof *zero);
-    sn_body body = {"ball", "error [m]", mesh, zero, zero, 0};
+    sn_body body = {"ball", "error [m]", mesh, zero, zero, 0, 0};
     sn_report *report;
     CHECK_OK(sn_report_create("ball", &report));
     sn_report_bodies(report, 1, &body, "ball");
@@ -422,10 +424,10 @@ static void test_memory(void **state) {
     CHECK_OK(sn_mesh_build(&def, &mesh));
     double zero[3 * 64] = {0};
     assert_in_range(mesh->node_count, 4, 64);
-    sn_body body = {"cube", "error [m]", mesh, zero, zero, 0};
+    sn_body body = {"cube", "error [m]", mesh, zero, zero, 0, 0};
     double x[2] = {0, 1};
     sn_line line = {"line", SN_LINE, 0, 2, x, x};
-    sn_plot plot = {"plot", "x", "y", NULL, false, false, 1, &line};
+    sn_plot plot = {"plot", "x", "y", NULL, false, false, 0, 0, 1, &line};
     static const char *const cells[] = {"a", "1"};
     char *before = strdup(getenv("PATH"));
     setenv("PATH", scratch, 1); // without gnuplot: fast, and no less to allocate
