@@ -446,7 +446,7 @@ static sn_status block_groups(reader *r, int dimension, long long tag, int *body
     if (dimension == 3 && *count > 1)
         return sn_gmsh_fail(
             &r->scan, SN_E_MESH,
-            "found volume %lld in %d physical volumes ('%s', '%s'), expected one: a "
+            "found volume %lld in %d physical volumes (\"%s\", \"%s\"), expected one: a "
             "cell has one tissue",
             tag, *count, r->lists.groups[(*groups)[0]].name, r->lists.groups[(*groups)[1]].name);
     if (dimension == 3 && *count == 0) {

@@ -33,8 +33,8 @@ static sn_status build_groups(sn_gmsh_lists *lists, sn_mesh *mesh) {
                 if (!strcmp(group->name, mesh->region_name[other]))
                     return sn_fail(
                         SN_E_MESH,
-                        "two regions have the name '%s' (cells without a physical volume "
-                        "are the region 'body'): rename one",
+                        "two regions have the name \"%s\" (cells without a physical volume "
+                        "are the region \"body\"): rename one",
                         group->name);
             memcpy(mesh->region_name[group->index], group->name, SN_NAME_MAX);
             continue;
@@ -86,7 +86,7 @@ static sn_status build_faces(const sn_gmsh_lists *lists, sn_mesh *mesh, const in
             if (node < 0) {
                 const double *x = lists->node + 3 * (size_t)face->node[k];
                 return sn_fail(SN_E_MESH,
-                               "surface '%s' has a triangle with a node at (%.6g, %.6g, %.6g) m "
+                               "surface \"%s\" has a triangle with a node at (%.6g, %.6g, %.6g) m "
                                "that belongs to no tetrahedron: save the volume behind it too",
                                surface->name, x[0], x[1], x[2]);
             }

@@ -81,7 +81,8 @@ static sn_status find_sections(sn_gmsh_scan *scan) {
         first_word(text, end, word);
         if (!*word) continue;
         if (!*open && (word[0] != '$' || !strncmp(word, "$End", 4)))
-            return sn_gmsh_fail(scan, SN_E_SYNTAX, "found '%s', expected a section such as $Nodes",
+            return sn_gmsh_fail(scan, SN_E_SYNTAX,
+                                "found \"%s\", expected a section such as $Nodes",
                                 sn_text_quote(word).text);
         if (!*open) {
             SN_TRY(add_section(scan, word, end < scan->end ? end + 1 : end));
@@ -90,7 +91,7 @@ static sn_status find_sections(sn_gmsh_scan *scan) {
         } else if (!strncmp(word, "$End", 4) && !strcmp(word + 4, open + 1)) {
             *open = 0;
         } else if (strcmp(open, "$Comments")) {
-            return sn_gmsh_fail(scan, SN_E_SYNTAX, "found '%s', expected $End%s for line %d",
+            return sn_gmsh_fail(scan, SN_E_SYNTAX, "found \"%s\", expected $End%s for line %d",
                                 sn_text_quote(word).text, open + 1, opened);
         }
         if (end == scan->end) break;
@@ -120,7 +121,7 @@ static sn_status read_format(sn_gmsh_scan *scan, int *version) {
     if (strcmp(word, "$MeshFormat"))
         return sn_gmsh_fail(
             scan, SN_E_SYNTAX,
-            "found '%s', expected $MeshFormat: this is no Gmsh mesh of format 2.2 or "
+            "found \"%s\", expected $MeshFormat: this is no Gmsh mesh of format 2.2 or "
             "4.1",
             sn_text_quote(word).text);
     scan->where = "$MeshFormat";
@@ -208,7 +209,7 @@ sn_status sn_gmsh_line(sn_gmsh_scan *scan, const char *what) {
 sn_status sn_gmsh_leave(sn_gmsh_scan *scan) {
     if (next_line(scan) && *scan->at == '$') return SN_OK;
     return sn_gmsh_fail(scan, SN_E_SYNTAX,
-                        "found '%s', expected $End%s: more lines than the section declares",
+                        "found \"%s\", expected $End%s: more lines than the section declares",
                         sn_text_quote(scan->at).text, scan->where + 1);
 }
 
@@ -223,7 +224,7 @@ static sn_status fail_word(const sn_gmsh_scan *scan, const char *what) {
     first_word(scan->at, scan->at + strlen(scan->at), word);
     if (!*word)
         return sn_gmsh_fail(scan, SN_E_SYNTAX, "found the end of the line, expected %s", what);
-    return sn_gmsh_fail(scan, SN_E_SYNTAX, "found '%s', expected %s", sn_text_quote(word).text,
+    return sn_gmsh_fail(scan, SN_E_SYNTAX, "found \"%s\", expected %s", sn_text_quote(word).text,
                         what);
 }
 
@@ -271,6 +272,6 @@ sn_status sn_gmsh_line_end(sn_gmsh_scan *scan, const char *expected) {
     if (!*scan->at) return SN_OK;
     char word[64];
     first_word(scan->at, scan->at + strlen(scan->at), word);
-    return sn_gmsh_fail(scan, SN_E_SYNTAX, "found '%s' after the last number, expected only %s",
+    return sn_gmsh_fail(scan, SN_E_SYNTAX, "found \"%s\" after the last number, expected only %s",
                         sn_text_quote(word).text, expected);
 }

@@ -83,7 +83,7 @@ static sn_status check_same_parts(const sn_mesh *from, const sn_mesh *to) {
     for (int s = 0; s < from->surface_count; s++)
         if (s >= to->surface_count || strcmp(from->surface[s].name, to->surface[s].name))
             return sn_fail(
-                SN_E_DEFINITION, "the other mesh has '%s' where the case has surface '%s'",
+                SN_E_DEFINITION, "the other mesh has \"%s\" where the case has surface \"%s\"",
                 s < to->surface_count ? to->surface[s].name : "no surface", from->surface[s].name);
     return SN_OK;
 }
@@ -160,7 +160,7 @@ static sn_status add_columns(sn_record *history, const char *name, const char *k
         int length = snprintf(column, sizeof column, "%s_%s%c", name, kind, "xyz"[d]);
         if (length >= (int)sizeof column)
             return sn_fail(SN_E_DEFINITION,
-                           "the name '%s' is too long for a column of the history: "
+                           "the name \"%s\" is too long for a column of the history: "
                            "take at most %d letters",
                            name, SN_NAME_MAX - 4);
         SN_TRY(sn_record_add_series(history, column, unit));

@@ -24,23 +24,23 @@ static sn_status check_tissue(const sn_case *c, const sn_tissue *tissue) {
     const sn_law *law = tissue->law;
     if (law->kind == SN_LAW_MEMBRANE)
         return sn_fail(SN_E_DEFINITION,
-                       "law '%s' is for membranes: a body needs a solid law such as "
+                       "law \"%s\" is for membranes: a body needs a solid law such as "
                        "demiray or neo-hookean",
                        law->name);
     if (law->kind == SN_LAW_UNIAXIAL && !isfinite(tissue->poissons_ratio))
         return sn_fail(SN_E_DEFINITION,
-                       "the uniaxial law '%s' needs poissons_ratio in a "
+                       "the uniaxial law \"%s\" needs poissons_ratio in a "
                        "three-dimensional body: give it, or take a solid law",
                        law->name);
     if (law->fibres && !(norm3(c->fibre) > 0))
         return sn_fail(
             SN_E_DEFINITION,
-            "law '%s' has fibres: give their direction under 'fibres', such as [1, 0, 0]",
+            "law \"%s\" has fibres: give their direction under \"fibres\", such as [1, 0, 0]",
             law->name);
     if (needs_density(c) && isnan(tissue->density))
         return sn_fail(SN_E_DEFINITION,
                        "no density: gravity and all but quasi-static runs need one; "
-                       "give it in the tissue, such as 'density: 1060 kg/m3'");
+                       "give it in the tissue, such as \"density: 1060 kg/m3\"");
     return SN_OK;
 }
 
@@ -52,7 +52,8 @@ static sn_status check_tissues(const sn_case *c) {
                        norm3(c->fibre));
     for (int r = 0; r < c->mesh->region_count; r++) {
         sn_status status = check_tissue(c, &c->tissue[r]);
-        if (status != SN_OK) return sn_fail_within(status, "region '%s'", c->mesh->region_name[r]);
+        if (status != SN_OK)
+            return sn_fail_within(status, "region \"%s\"", c->mesh->region_name[r]);
     }
     return SN_OK;
 }
@@ -64,7 +65,7 @@ static sn_status check_surface(const sn_mesh *mesh, int surface, const char *wha
         return sn_fail(SN_E_DEFINITION, "%s %d is on surface %d, but the mesh has %d", what,
                        index + 1, surface, mesh->surface_count);
     if (mesh->surface[surface].face_count == 0)
-        return sn_fail(SN_E_DEFINITION, "%s %d: surface '%s' has no faces", what, index + 1,
+        return sn_fail(SN_E_DEFINITION, "%s %d: surface \"%s\" has no faces", what, index + 1,
                        mesh->surface[surface].name);
     return SN_OK;
 }
@@ -75,7 +76,7 @@ static sn_status check_loads(const sn_case *c) {
         SN_TRY(check_surface(c->mesh, s->surface, "support", i));
         if (!s->fix[0] && !s->fix[1] && !s->fix[2])
             return sn_fail(SN_E_DEFINITION,
-                           "support %d on '%s' fixes no direction: give 'fix: xyz' or "
+                           "support %d on \"%s\" fixes no direction: give \"fix: xyz\" or "
                            "some of the letters",
                            i + 1, c->mesh->surface[s->surface].name);
     }
@@ -84,15 +85,15 @@ static sn_status check_loads(const sn_case *c) {
         SN_TRY(check_surface(c->mesh, load->surface, "load", i));
         const char *on = c->mesh->surface[load->surface].name;
         if (!finite3(load->vector) || !isfinite(load->pressure))
-            return sn_fail(SN_E_RANGE, "load %d on '%s' is not a finite number", i + 1, on);
+            return sn_fail(SN_E_RANGE, "load %d on \"%s\" is not a finite number", i + 1, on);
         if (load->factor && load->factor->channels != 1)
             return sn_fail(SN_E_DEFINITION,
-                           "load %d on '%s': its time table has %d columns of values, "
+                           "load %d on \"%s\": its time table has %d columns of values, "
                            "1 expected",
                            i + 1, on, load->factor->channels);
         if (load->kind == SN_LOAD_DISPLACEMENT && load->free[0] && load->free[1] && load->free[2])
             return sn_fail(SN_E_DEFINITION,
-                           "load %d on '%s': all three components are free; "
+                           "load %d on \"%s\": all three components are free; "
                            "prescribe one",
                            i + 1, on);
     }
@@ -165,7 +166,7 @@ static sn_status check_pair(const sn_mesh *mesh, const motion *a, const motion *
         const double *x = mesh->node + 3 * (size_t)node;
         return sn_fail(
             SN_E_DEFINITION,
-            "'%s' and '%s' share node %d at (%g, %g, %g) m, where one prescribes %g m along "
+            "\"%s\" and \"%s\" share node %d at (%g, %g, %g) m, where one prescribes %g m along "
             "%c and the other %g m (at %g s): free that direction on one of them",
             mesh->surface[a->surface].name, mesh->surface[b->surface].name, node, x[0], x[1], x[2],
             motion_at(a, d, t), "xyz"[d], motion_at(b, d, t), t);
@@ -198,12 +199,12 @@ static sn_status check_names(const sn_case *c) {
         const char *name = a < c->probe_count ? c->probe[a].name : c->tool[a - c->probe_count].name;
         if (!name[0]) return sn_fail(SN_E_DEFINITION, "a probe or tool has no name: give it one");
         if (strlen(name) > SN_NAME_MAX - 4)
-            return sn_fail(SN_E_DEFINITION, "the name '%s' is too long: at most %d bytes", name,
+            return sn_fail(SN_E_DEFINITION, "the name \"%s\" is too long: at most %d bytes", name,
                            SN_NAME_MAX - 4);
         for (int b = 0; b < a; b++)
             if (!strcmp(name,
                         b < c->probe_count ? c->probe[b].name : c->tool[b - c->probe_count].name))
-                return sn_fail(SN_E_DEFINITION, "two probes or tools are named '%s': rename one",
+                return sn_fail(SN_E_DEFINITION, "two probes or tools are named \"%s\": rename one",
                                name);
     }
     return SN_OK;
@@ -217,7 +218,7 @@ static sn_status check_probes(const sn_case *c) {
         sn_status status = p->kind == SN_PROBE_POINT
                                ? sn_mesh_locate(c->mesh, p->point, &cell, weight)
                                : check_surface(c->mesh, p->surface, "reaction", i);
-        if (status != SN_OK) return sn_fail_within(status, "probe '%s'", p->name);
+        if (status != SN_OK) return sn_fail_within(status, "probe \"%s\"", p->name);
     }
     return SN_OK;
 }
@@ -262,7 +263,7 @@ static sn_status check_tool_start(const sn_mesh *mesh, const sn_tool *tool) {
     for (int d = 0; d < 3; d++) free[d] = x[d] + tool->radius * outwards[d];
     return sn_fail(
         SN_E_DEFINITION,
-        "tool '%s' starts inside the body, %.3g m deep at node %d at (%g, %g, %g) m: move "
+        "tool \"%s\" starts inside the body, %.3g m deep at node %d at (%g, %g, %g) m: move "
         "its centre from (%g, %g, %g) m to (%g, %g, %g) m or beyond",
         tool->name, inside ? 2 * tool->radius - depth : depth, node, x[0], x[1], x[2], centre[0],
         centre[1], centre[2], free[0], free[1], free[2]);
@@ -273,14 +274,14 @@ static sn_status check_tools(const sn_case *c) {
         const sn_tool *tool = &c->tool[i];
         if (!(tool->radius > 0) || !isfinite(tool->radius) || !finite3(tool->at))
             return sn_fail(SN_E_RANGE,
-                           "tool '%s': radius %g m must be positive, and its place finite",
+                           "tool \"%s\": radius %g m must be positive, and its place finite",
                            tool->name, tool->radius);
         if (!(tool->friction >= 0) || !isfinite(tool->friction))
-            return sn_fail(SN_E_RANGE, "tool '%s': friction %g must be 0 or more", tool->name,
+            return sn_fail(SN_E_RANGE, "tool \"%s\": friction %g must be 0 or more", tool->name,
                            tool->friction);
         if (tool->path && tool->path->channels != 3)
             return sn_fail(SN_E_DEFINITION,
-                           "tool '%s': its path has %d columns of values, 3 expected", tool->name,
+                           "tool \"%s\": its path has %d columns of values, 3 expected", tool->name,
                            tool->path->channels);
         SN_TRY(check_tool_start(c->mesh, tool));
     }

@@ -26,7 +26,7 @@ static sn_status check_cells(const int cells[3], const char name[3][8], int leas
     for (int d = 0; d < 3; d++) {
         int least = d == 1 ? least_around : 1;
         if (cells[d] < least)
-            return sn_fail(SN_E_RANGE, "cells [%d, %d, %d]: %d along '%s', at least %d expected",
+            return sn_fail(SN_E_RANGE, "cells [%d, %d, %d]: %d along \"%s\", at least %d expected",
                            cells[0], cells[1], cells[2], cells[d], name[d], least);
     }
     return SN_OK;

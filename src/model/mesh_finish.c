@@ -22,7 +22,7 @@ static sn_status check_counts(const sn_mesh *mesh) {
     for (int s = 0; s < mesh->surface_count; s++)
         for (int other = 0; other < s; other++)
             if (!strcmp(mesh->surface[s].name, mesh->surface[other].name))
-                return sn_fail(SN_E_MESH, "two surfaces have the name '%s': rename one",
+                return sn_fail(SN_E_MESH, "two surfaces have the name \"%s\": rename one",
                                mesh->surface[s].name);
     return SN_OK;
 }
@@ -110,7 +110,7 @@ static sn_status finish_surface(const sn_mesh *mesh, const sn_faces *faces, sn_s
         if (found < 0)
             return sn_fail(
                 SN_E_MESH,
-                "surface '%s': triangle %d (counted from 0, nodes %d %d %d) is not a face "
+                "surface \"%s\": triangle %d (counted from 0, nodes %d %d %d) is not a face "
                 "of any tetrahedron",
                 surface->name, f, node[0], node[1], node[2]);
         int outwards[3];
@@ -148,7 +148,7 @@ static sn_status check_own_boundary(const sn_mesh *mesh, const sn_faces *faces,
     if (surface->face_count == expected && outer == expected) return SN_OK;
     return sn_fail(
         SN_E_MESH,
-        "surface 'boundary' has %d faces, %d of them outer ones, but the mesh has %d outer "
+        "surface \"boundary\" has %d faces, %d of them outer ones, but the mesh has %d outer "
         "faces: the name is kept for all of them; rename the surface",
         surface->face_count, outer, expected);
 }

@@ -21,9 +21,9 @@ int sn_mesh_surface(const sn_mesh *mesh, const char *name) {
     }
     const char *near = sn_suggest(name, names, mesh->surface_count);
     if (near)
-        (void)sn_fail(SN_E_NAME, "no surface '%s': did you mean '%s'?", name, near);
+        (void)sn_fail(SN_E_NAME, "no surface \"%s\": did you mean \"%s\"?", name, near);
     else
-        (void)sn_fail(SN_E_NAME, "no surface '%s': the mesh has %s", name,
+        (void)sn_fail(SN_E_NAME, "no surface \"%s\": the mesh has %s", name,
                       known[0] ? known : "none");
     sn_free(names);
     return -1;

@@ -20,7 +20,7 @@ for name in empty header nounit wrongunit misspelt nan inf overflow text back sh
     fails 2 "$name.csv" "$SINEW" analyze $name.csv --test tensile --out out
     fails 2 "$name.csv" "$SINEW" fit $name.csv --elastic exponential --out out
 done
-fails 2 'did you mean "stress"' "$SINEW" analyze misspelt.csv --test tensile
+fails 2 'did you mean "stress' "$SINEW" analyze misspelt.csv --test tensile
 fails 2 'wrongunit.csv:1' "$SINEW" analyze wrongunit.csv --test tensile
 printf '%s\n0,1,0\n1,1,1\n2,1,2\n3,1,1\n4,1,2\n5,1,3\n6,1,2\n' "$head" >constant.csv
 fails 2 'constant.csv' "$SINEW" fit constant.csv --elastic exponential

@@ -326,7 +326,7 @@ static void refusals(void **state) {
     d = block(SN_PATTERN_KUHN, 2147483647, 2147483647, 2147483647);
     CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "at most 50000000");
     d = block(SN_PATTERN_KUHN, 3, 0, 3);
-    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "0 along 'y', at least 1");
+    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "0 along \"y\", at least 1");
     d = block(SN_PATTERN_KUHN, 3, 3, 3);
     static const double bad[] = {0, -1, NAN, INFINITY};
     for (int i = 0; i < 4; i++) {
@@ -339,7 +339,7 @@ static void refusals(void **state) {
     d = tube(SN_PATTERN_MIRRORED, 2, 9, 2);
     CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "9 cells around");
     d = tube(SN_PATTERN_KUHN, 2, 2, 2);
-    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "2 along 'around', at least 3");
+    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "2 along \"around\", at least 3");
     d = tube(SN_PATTERN_KUHN, 2, 8, 2);
     d.outer_radius = d.inner_radius;
     CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "must be larger than inner_radius");
@@ -359,7 +359,7 @@ static void refusals(void **state) {
     d = cylinder(SN_PATTERN_KUHN, 1, 2147483647, 2147483647);
     CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "at most 50000000");
     d = cylinder(SN_PATTERN_KUHN, 1, 5, 0);
-    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "0 along 'along'");
+    CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "0 along \"along\"");
 }
 
 // The least number around that a body-centred tube names is enough, and one less is too few: there

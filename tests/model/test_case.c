@@ -144,7 +144,7 @@ static void on_mesh(void **state) {
     sn_shape_def def = tube(SN_PATTERN_KUHN, 1, 5, 1);
     sn_case *none = copy;
     sn_mesh *m = build(&def);
-    CHECK_FAILS(sn_case_on_mesh(copy, m, &none), SN_E_DEFINITION, "'inner' where the case");
+    CHECK_FAILS(sn_case_on_mesh(copy, m, &none), SN_E_DEFINITION, "\"inner\" where the case");
     assert_null(none);
     sn_mesh_destroy(m);
     m = build(&copy->shape);

@@ -49,7 +49,7 @@ static void tissues(void **state) {
     (void)state;
     sn_case *c = block_case();
     c->tissue[0].law = NULL;
-    check_refused(c, SN_E_DEFINITION, "region 'body': tissue liver");
+    check_refused(c, SN_E_DEFINITION, "region \"body\": tissue liver");
     c = block_case();
     c->tissue[0].value[0] = -1;
     check_refused(c, SN_E_RANGE, "modulus");
@@ -99,7 +99,7 @@ static void loads(void **state) {
     (void)state;
     sn_case *c = block_case();
     hold(c, "left", "");
-    check_refused(c, SN_E_DEFINITION, "support 1 on 'left' fixes no direction");
+    check_refused(c, SN_E_DEFINITION, "support 1 on \"left\" fixes no direction");
     c = block_case();
     hold(c, "left", "x");
     c->support[0].surface = 7;
@@ -107,13 +107,13 @@ static void loads(void **state) {
     c = block_case();
     move(c, "top", 0, 0, 0);
     c->mesh->surface[5].face_count = 0;
-    check_refused(c, SN_E_DEFINITION, "surface 'top' has no faces");
+    check_refused(c, SN_E_DEFINITION, "surface \"top\" has no faces");
     c = block_case();
     move(c, "top", NAN, NAN, NAN);
     check_refused(c, SN_E_DEFINITION, "all three components are free");
     c = block_case();
     move(c, "top", 0, 0, INFINITY);
-    check_refused(c, SN_E_RANGE, "load 1 on 'top' is not a finite number");
+    check_refused(c, SN_E_RANGE, "load 1 on \"top\" is not a finite number");
     c = block_case();
     move(c, "top", 0, 0, 1);
     CHECK_OK(sn_history_create(2, 1, (double[]){0}, (double[]){0, 0}, &c->load[0].factor));
@@ -126,7 +126,7 @@ static void contradictions(void **state) {
     hold(c, "left", "xyz");
     move(c, "top", NAN, NAN, 0.003)->factor = ramp(0, 1, 0.5);
     CHECK_FAILS(sn_case_check(c), SN_E_DEFINITION,
-                "'left' and 'top' share node 40 at (0, 0, 0.023) m");
+                "\"left\" and \"top\" share node 40 at (0, 0, 0.023) m");
     check_refused(c, SN_E_DEFINITION, "0 m along z and the other 0.003 m (at 0.5 s)");
     // two loads that part only between the ends: the knots tell
     c = block_case();
@@ -134,7 +134,7 @@ static void contradictions(void **state) {
     sn_history *h = NULL;
     CHECK_OK(sn_history_create(1, 3, (double[]){0, 0.4, 1}, (double[]){0, 0.5, 1}, &h));
     move(c, "top", 0.001, NAN, NAN)->factor = h;
-    check_refused(c, SN_E_DEFINITION, "'right' and 'top' share node");
+    check_refused(c, SN_E_DEFINITION, "\"right\" and \"top\" share node");
     c = block_case();
     move(c, "right", 0.001, NAN, NAN);
     move(c, "front", 0.0011, NAN, NAN);
@@ -146,7 +146,7 @@ static void names_and_probes(void **state) {
     sn_case *c = block_case();
     add_probe(c, "tip", SN_PROBE_POINT, 0.01, 0.01, 0.01, NULL);
     add_sphere(c, "tip", 0.001, 0, 0, 0.1);
-    check_refused(c, SN_E_DEFINITION, "two probes or tools are named 'tip'");
+    check_refused(c, SN_E_DEFINITION, "two probes or tools are named \"tip\"");
     c = block_case();
     add_probe(c, "", SN_PROBE_POINT, 0.01, 0.01, 0.01, NULL);
     check_refused(c, SN_E_DEFINITION, "has no name");
@@ -157,11 +157,11 @@ static void names_and_probes(void **state) {
     check_refused(c, SN_E_DEFINITION, "at most 60 bytes");
     c = block_case();
     add_probe(c, "tip", SN_PROBE_POINT, 0.01, 0.01, 0.1, NULL);
-    check_refused(c, SN_E_DEFINITION, "probe 'tip': the point (0.01, 0.01, 0.1) m is outside");
+    check_refused(c, SN_E_DEFINITION, "probe \"tip\": the point (0.01, 0.01, 0.1) m is outside");
     c = block_case();
     add_probe(c, "pull", SN_PROBE_REACTION, 0, 0, 0, "top");
     c->probe[0].surface = -1;
-    check_refused(c, SN_E_DEFINITION, "probe 'pull': reaction 1 is on surface -1");
+    check_refused(c, SN_E_DEFINITION, "probe \"pull\": reaction 1 is on surface -1");
 }
 
 static void tools(void **state) {
@@ -172,7 +172,7 @@ static void tools(void **state) {
     CHECK_OK(sn_case_check(c));
     c->tool[0].at[2] = top + 0.9 * r;
     CHECK_FAILS(sn_case_check(c), SN_E_DEFINITION,
-                "tool 'ball' starts inside the body, 0.0004 m deep");
+                "tool \"ball\" starts inside the body, 0.0004 m deep");
     // the place it names is good
     double to[3];
     assert_int_equal(

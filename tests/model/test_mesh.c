@@ -94,7 +94,7 @@ static void finish_refuses(void **state) {
     m = two_cells(1);
     add_surface(m, 0, "lid", 2, (int[]){0, 1, 3, 1, 3, 4});
     CHECK_FAILS(sn_mesh_finish(m), SN_E_MESH,
-                "surface 'lid': triangle 1 (counted from 0, nodes 1 3 4)");
+                "surface \"lid\": triangle 1 (counted from 0, nodes 1 3 4)");
     m->surface[0].face[4] = 77;
     CHECK_FAILS(sn_mesh_finish(m), SN_E_MESH, "nodes 1 77 4");
     sn_mesh_destroy(m);
@@ -107,7 +107,7 @@ static void finish_refuses(void **state) {
     m = two_cells(2);
     add_surface(m, 0, "lid", 1, (int[]){0, 1, 3});
     add_surface(m, 1, "lid", 1, (int[]){0, 1, 3});
-    CHECK_FAILS(sn_mesh_finish(m), SN_E_MESH, "two surfaces have the name 'lid'");
+    CHECK_FAILS(sn_mesh_finish(m), SN_E_MESH, "two surfaces have the name \"lid\"");
     sn_mesh_destroy(m);
 
     CHECK_OK(sn_mesh_create(3, 0, 1, 0, &m));
@@ -228,7 +228,7 @@ static void questions(void **state) {
     sn_mesh *m = build(&def);
     assert_int_equal(sn_mesh_surface(m, "top"), 5);
     assert_int_equal(sn_mesh_surface(m, "botom"), -1);
-    assert_non_null(strstr(sn_error_text(), "did you mean 'bottom'"));
+    assert_non_null(strstr(sn_error_text(), "did you mean \"bottom\""));
     assert_int_equal(sn_mesh_surface(m, "ceiling"), -1);
     assert_non_null(strstr(sn_error_text(), "left right front back bottom top boundary"));
 
