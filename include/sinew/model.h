@@ -209,6 +209,9 @@ SN_API void sn_case_prescribed(const sn_case *c, double t, unsigned char *fixed,
 /// Which rigid motions the supports and prescribed motions leave free, as text for a message, such
 /// as "translation along z, rotation about x"; empty when none.
 SN_API void sn_case_free_motions(const sn_case *c, char text[SN_TEXT_MAX]);
+/// The surface whose prescribed motion is all that acts on the body, so that at rest it would only be
+/// carried along undeformed (as a rule, the supports were forgotten); -1 when there is more.
+SN_API int sn_case_carried_by(const sn_case *c);
 /// Names of the history columns of the case in the order engines fill them: time, then for a point
 /// probe NAME_ux NAME_uy NAME_uz [m], for a reaction or a tool NAME_fx NAME_fy NAME_fz [N].
 SN_API sn_status sn_case_history_columns(const sn_case *c, sn_record *history);

@@ -29,16 +29,22 @@ static void stress_plot(sn_report *report, const char *title, int lines, const s
 //---- tensile -------------------------------------------------------------------------------------
 
 static json_t *tensile_json(const sn_tensile *r) {
-    return json_pack("{s:o, s:s, s:o, s:o, s:o, s:o, s:s*, s:o, s:o, s:o, s:{s:o, s:o, s:o}}",
-                     "youngs_modulus_Pa", cli_number(r->youngs_modulus), "modulus_method",
-                     r->modulus_method, "toe_modulus_Pa", cli_number(r->toe_modulus),
-                     "yield_stress_Pa", cli_number(r->yield_stress), "yield_strain",
-                     cli_number(r->yield_strain), "reason", *r->reason ? r->reason : NULL,
-                     "ultimate_tensile_strength_Pa", cli_number(r->ultimate_tensile_strength),
-                     "strain_at_ultimate", cli_number(r->strain_at_ultimate),
-                     "work_to_failure_J_per_m3", cli_number(r->work_to_failure), "slope_stress",
-                     "B", cli_number(r->B), "C_Pa", cli_number(r->C), "r_squared",
-                     cli_number(r->slope_r_squared));
+    json_t *json = json_object(), *slope = json_object();
+    cli_put_number(json, "youngs_modulus_Pa", r->youngs_modulus);
+    cli_put_text(json, "modulus_method", r->modulus_method);
+    cli_put_number(json, "toe_modulus_Pa", r->toe_modulus);
+    cli_put_number(json, "max_slope_modulus_Pa", r->max_slope_modulus);
+    cli_put_number(json, "yield_stress_Pa", r->yield_stress);
+    cli_put_number(json, "yield_strain", r->yield_strain);
+    if (*r->reason) cli_put_text(json, "reason", r->reason);
+    cli_put_number(json, "ultimate_tensile_strength_Pa", r->ultimate_tensile_strength);
+    cli_put_number(json, "strain_at_ultimate", r->strain_at_ultimate);
+    cli_put_number(json, "work_to_failure_J_per_m3", r->work_to_failure);
+    cli_put_number(slope, "B", r->B);
+    cli_put_number(slope, "C_Pa", r->C);
+    cli_put_number(slope, "r_squared", r->slope_r_squared);
+    cli_put(json, "slope_stress", slope);
+    return json;
 }
 
 static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
@@ -93,19 +99,22 @@ static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
     json_t *cycles = json_array();
     for (int i = 0; i < r.count; i++) {
         const sn_cycle *c = &r.cycle[i];
-        json_array_append_new(cycles, json_pack("{s:o, s:o, s:o, s:o}", "hysteresis",
-                                                cli_number(c->hysteresis), "loading_area_J_per_m3",
-                                                cli_number(c->loading_area), "loop_area_J_per_m3",
-                                                cli_number(c->loop_area), "peak_stress_Pa",
-                                                cli_number(c->peak_stress)));
+        json_t *row = json_object();
+        cli_put_number(row, "hysteresis", c->hysteresis);
+        cli_put_number(row, "loading_area_J_per_m3", c->loading_area);
+        cli_put_number(row, "loop_area_J_per_m3", c->loop_area);
+        cli_put_number(row, "peak_stress_Pa", c->peak_stress);
+        json_array_append_new(cycles, row);
         char what[32], value[160];
         snprintf(what, sizeof what, "cycle %d", i + 1);
         snprintf(value, sizeof value, "hysteresis %.4f, peak %s", c->hysteresis,
                  cli_show(c->peak_stress, "Pa"));
         say(a, what, value, "");
     }
-    a->json = json_pack("{s:o, s:s}", "cycles", cycles, "definition",
-                        "hysteresis = loop area / area under the loading curve, nominal stress");
+    a->json = json_object();
+    cli_put(a->json, "cycles", cycles);
+    cli_put_text(a->json, "definition",
+                 "hysteresis = loop area / area under the loading curve, nominal stress");
     if (a->report) {
         sn_line line = {"measured", SN_LINE, 0, curve->count, curve->stretch, curve->stress};
         stress_plot(a->report, "Cycles", 1, &line);
@@ -125,10 +134,12 @@ static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
 static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
     sn_relaxation_result r;
     SN_TRY(sn_reduce_relaxation(curve, &r));
-    a->json = json_pack("{s:o, s:o, s:o, s:o, s:o}", "peak_stress_Pa", cli_number(r.peak_stress),
-                        "relaxed_fraction", cli_number(r.relaxed_fraction), "rate_per_decade",
-                        cli_number(r.rate_per_decade), "ramp_s", cli_number(r.ramp_s),
-                        "final_stress_Pa", cli_number(r.final_stress));
+    a->json = json_object();
+    cli_put_number(a->json, "peak_stress_Pa", r.peak_stress);
+    cli_put_number(a->json, "relaxed_fraction", r.relaxed_fraction);
+    cli_put_number(a->json, "rate_per_decade", r.rate_per_decade);
+    cli_put_number(a->json, "ramp_s", r.ramp_s);
+    cli_put_number(a->json, "final_stress_Pa", r.final_stress);
     say(a, "ramp", cli_show(r.ramp_s, "s"), "");
     say(a, "peak stress", cli_show(r.peak_stress, "Pa"), "");
     say(a, "final stress", cli_show(r.final_stress, "Pa"), "");

@@ -38,13 +38,19 @@ static void machine_name(char *text, size_t size) {
 }
 
 static json_t *row_json(const sn_springs_bench_row *r) {
-    return json_pack("{s:s, s:b, s:i, s:i, s:i, s:i, s:i, s:s, s:o, s:o, s:o}", "model", r->model,
-                     "volume", r->volume, "memory_terms", r->memory_terms, "nodes", r->nodes,
-                     "springs", r->springs, "cells", r->cells, "threads", r->threads, "precision",
-                     r->precision == SN_SINGLE ? "single" : "double", "springs_per_second",
-                     cli_number(r->springs_per_second), "cells_per_second",
-                     cli_number(r->cells_per_second), "bound_per_second",
-                     cli_number(r->bound_per_second));
+    json_t *json = json_object();
+    cli_put_text(json, "model", r->model);
+    cli_put_flag(json, "volume", r->volume);
+    cli_put_integer(json, "memory_terms", r->memory_terms);
+    cli_put_integer(json, "nodes", r->nodes);
+    cli_put_integer(json, "springs", r->springs);
+    cli_put_integer(json, "cells", r->cells);
+    cli_put_integer(json, "threads", r->threads);
+    cli_put_text(json, "precision", r->precision == SN_SINGLE ? "single" : "double");
+    cli_put_number(json, "springs_per_second", r->springs_per_second);
+    cli_put_number(json, "cells_per_second", r->cells_per_second);
+    cli_put_number(json, "bound_per_second", r->bound_per_second);
+    return json;
 }
 
 static void print_row(const sn_springs_bench_row *r) {
@@ -83,8 +89,10 @@ static int run(const cli_command *command, int argc, char **argv) {
         json_array_append_new(results, row_json(&row));
         if (table) print_row(&row);
     }
-    json_t *json = json_pack("{s:o, s:s, s:s}", "results", results, "machine", machine, "kernels",
-                             sn_isa_name());
+    json_t *json = json_object();
+    cli_put(json, "results", results);
+    cli_put_text(json, "machine", machine);
+    cli_put_text(json, "kernels", sn_isa_name());
     if (arguments.json)
         cli_print_json(json);
     else

@@ -73,10 +73,17 @@ void cli_progress_end(cli_progress *progress);
 
 //---- results -------------------------------------------------------------------------------------
 
-/// A JSON number; null where it is not finite.
-json_t *cli_number(double value);
-/// A JSON array of numbers.
+/// Puts a number into an object; null where it is not finite.
+void cli_put_number(json_t *object, const char *key, double value);
+void cli_put_integer(json_t *object, const char *key, long value);
+void cli_put_text(json_t *object, const char *key, const char *text);
+void cli_put_flag(json_t *object, const char *key, bool value);
+/// Puts a value into an object, which owns it from then on.
+void cli_put(json_t *object, const char *key, json_t *value);
+/// A JSON array of numbers; null where one is not finite.
 json_t *cli_numbers(int count, const double *values);
+/// The exponentials that stand for a memory: terms, max_error, band_s, g_infinity, g, tau_s.
+json_t *cli_exponentials(const sn_exponentials *e);
 /// Writes an object to folder/name, indented.
 sn_status cli_write_json(const char *folder, const char *name, const json_t *object);
 /// Prints an object on standard output and releases it.

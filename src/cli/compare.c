@@ -7,22 +7,32 @@
 #include "cli/cli.h"
 
 static json_t *model_json(const sn_comparison_model *m) {
-    return json_pack("{s:s, s:b, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:i, s:i, s:i}", "name",
-                     m->name, "done", m->done, "reason", m->summary.reason, "displacement_rms",
-                     cli_number(m->displacement_rms), "displacement_max",
-                     cli_number(m->displacement_max), "reaction_rms", cli_number(m->reaction_rms),
-                     "stress_rms", cli_number(m->stress_rms), "energy", cli_number(m->energy),
-                     "wall_s", cli_number(m->summary.wall_s), "real_time_factor",
-                     cli_number(m->summary.real_time_factor), "nodes", m->summary.nodes, "cells",
-                     m->summary.cells, "memory_terms", m->summary.memory_terms);
+    json_t *json = json_object();
+    cli_put_text(json, "name", m->name);
+    cli_put_flag(json, "done", m->done);
+    cli_put_text(json, "reason", m->summary.reason);
+    cli_put_number(json, "displacement_rms", m->displacement_rms);
+    cli_put_number(json, "displacement_max", m->displacement_max);
+    cli_put_number(json, "reaction_rms", m->reaction_rms);
+    cli_put_number(json, "stress_rms", m->stress_rms);
+    cli_put_number(json, "energy", m->energy);
+    cli_put_number(json, "wall_s", m->summary.wall_s);
+    cli_put_number(json, "real_time_factor", m->summary.real_time_factor);
+    cli_put_integer(json, "nodes", m->summary.nodes);
+    cli_put_integer(json, "cells", m->summary.cells);
+    cli_put_integer(json, "memory_terms", m->summary.memory_terms);
+    return json;
 }
 
 static json_t *comparison_json(const sn_case *c, const sn_comparison *r) {
-    json_t *models = json_array(), *reference = model_json(&r->reference);
-    json_object_set_new(reference, "text", json_string(r->reference_text));
+    json_t *json = json_object(), *models = json_array(), *reference = model_json(&r->reference);
+    cli_put_text(reference, "text", r->reference_text);
     for (int m = 0; m < r->model_count; m++)
         json_array_append_new(models, model_json(&r->model[m]));
-    return json_pack("{s:s, s:o, s:o}", "case", c->name, "reference", reference, "models", models);
+    cli_put_text(json, "case", c->name);
+    cli_put(json, "reference", reference);
+    cli_put(json, "models", models);
+    return json;
 }
 
 //---- table ---------------------------------------------------------------------------------------

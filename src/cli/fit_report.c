@@ -33,79 +33,100 @@ static const char *shown_value(const sn_fit_param *p) {
 
 //---- JSON ----------------------------------------------------------------------------------------
 
-static json_t *parameters_json(const sn_fit_result *f, json_t *bounds, json_t *reasons) {
+static json_t *parameters_json(const sn_fit_result *f) {
     json_t *parameters = json_array();
     for (int k = 0; k < f->param_count; k++) {
         const sn_fit_param *p = &f->param[k];
-        json_array_append_new(parameters,
-                              json_pack("{s:s, s:o, s:s, s:o, s:[o,o], s:b, s:b}", "name", p->name,
-                                        "value", cli_number(p->value), "unit", p->unit,
-                                        "standard_error", cli_number(p->standard_error), "ci95",
-                                        cli_number(p->ci95[0]), cli_number(p->ci95[1]), "fixed",
-                                        p->fixed, "identifiable", p->identifiable));
-        if (p->at_bound) json_array_append_new(bounds, json_string(p->name));
-        if (!p->identifiable)
-            json_array_append_new(reasons,
-                                  json_pack("{s:s, s:s}", "name", p->name, "reason", p->reason));
+        json_t *row = json_object();
+        cli_put_text(row, "name", p->name);
+        cli_put_number(row, "value", p->value);
+        cli_put_text(row, "unit", p->unit);
+        cli_put_number(row, "standard_error", p->standard_error);
+        cli_put(row, "ci95", cli_numbers(2, p->ci95));
+        cli_put_flag(row, "fixed", p->fixed);
+        cli_put_flag(row, "identifiable", p->identifiable);
+        json_array_append_new(parameters, row);
     }
     return parameters;
+}
+
+static void put_verdicts(json_t *json, const sn_fit_result *f) {
+    json_t *bounds = json_array(), *reasons = json_array();
+    for (int k = 0; k < f->param_count; k++) {
+        const sn_fit_param *p = &f->param[k];
+        if (p->at_bound) json_array_append_new(bounds, json_string(p->name));
+        if (p->identifiable) continue;
+        json_t *row = json_object();
+        cli_put_text(row, "name", p->name);
+        cli_put_text(row, "reason", p->reason);
+        json_array_append_new(reasons, row);
+    }
+    cli_put(json, "active_bounds", bounds);
+    cli_put_flag(json, "identifiable", f->identifiable);
+    cli_put(json, "not_identifiable", reasons);
+    cli_put_text(json, "weakest_combination", f->weakest);
 }
 
 static json_t *curves_json(const fit_outcome *o) {
     json_t *data = json_array();
     for (int k = 0; k < o->data->count; k++) {
         const sn_fit_curve *c = &o->fit->curve[k];
-        const sn_curve *measured = &o->data->curve[k];
-        json_t *row = json_pack(
-            "{s:s, s:s, s:i, s:[o,o], s:f, s:o, s:o, s:o}", "file", o->data->path[k], "sha256",
-            o->data->sha256[k], "points", c->count, "window", cli_number(measured->time[0]),
-            cli_number(measured->time[measured->count - 1]), "weight", 1.0, "rmse_Pa",
-            cli_number(c->rmse), "rmse_over_peak", cli_number(c->rmse / c->peak), "r_squared",
-            cli_number(c->r_squared));
-        json_object_set_new(row, "worst",
-                            json_pack("{s:o, s:o, s:o}", "time_s",
-                                      cli_number(measured->time[c->worst]), "measured_Pa",
-                                      cli_number(measured->stress[c->worst]), "fitted_Pa",
-                                      cli_number(c->predicted[c->worst])));
+        const sn_curve *m = &o->data->curve[k];
+        json_t *row = json_object(), *worst = json_object();
+        cli_put_text(row, "file", o->data->path[k]);
+        cli_put_text(row, "sha256", o->data->sha256[k]);
+        cli_put_integer(row, "points", c->count);
+        cli_put(row, "window", cli_numbers(2, (double[]){m->time[0], m->time[m->count - 1]}));
+        cli_put_number(row, "weight", 1.0);
+        cli_put_number(row, "rmse_Pa", c->rmse);
+        cli_put_number(row, "rmse_over_peak", c->rmse / c->peak);
+        cli_put_number(row, "r_squared", c->r_squared);
+        cli_put_number(worst, "time_s", m->time[c->worst]);
+        cli_put_number(worst, "measured_Pa", m->stress[c->worst]);
+        cli_put_number(worst, "fitted_Pa", c->predicted[c->worst]);
+        cli_put(row, "worst", worst);
         json_array_append_new(data, row);
     }
     return data;
 }
 
+static json_t *held_out_json(const fit_outcome *o) {
+    json_t *rows = json_array();
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_fit_curve *c = &o->held_out[k].prediction;
+        json_t *row = json_object();
+        cli_put_text(row, "file", o->data->path[k]);
+        cli_put_number(row, "rmse_Pa", c->rmse);
+        cli_put_number(row, "rmse_over_peak", c->rmse / c->peak);
+        cli_put_number(row, "r_squared", c->r_squared);
+        json_array_append_new(rows, row);
+    }
+    return rows;
+}
+
 json_t *fit_json(const fit_outcome *o) {
     const sn_fit_result *f = o->fit;
-    json_t *bounds = json_array(), *reasons = json_array(), *correlation = json_array();
-    json_t *parameters = parameters_json(f, bounds, reasons);
+    json_t *json = json_object(), *correlation = json_array();
     for (int k = 0; k < f->param_count; k++)
         json_array_append_new(correlation,
                               cli_numbers(f->param_count, f->correlation + k * f->param_count));
-    json_t *json = json_pack(
-        "{s:s, s:s, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:b, s:o, s:n, s:b, s:s, s:i, s:o}",
-        "elastic", f->tissue.law->name, "memory", f->tissue.memory.law->name, "parameters",
-        parameters, "r_squared", cli_number(f->r_squared), "rmse_Pa", cli_number(f->rmse), "nrmse",
-        cli_number(f->nrmse), "aicc", cli_number(f->aicc), "correlation", correlation,
-        "active_bounds", bounds, "identifiable", f->identifiable, "not_identifiable", reasons,
-        "convex", "converged", f->converged, "reason", f->reason, "points", f->points, "data",
-        curves_json(o));
+    cli_put_text(json, "elastic", f->tissue.law->name);
+    cli_put_text(json, "memory", f->tissue.memory.law->name);
+    cli_put(json, "parameters", parameters_json(f));
+    cli_put_number(json, "r_squared", f->r_squared);
+    cli_put_number(json, "rmse_Pa", f->rmse);
+    cli_put_number(json, "nrmse", f->nrmse);
+    cli_put_number(json, "aicc", f->aicc);
+    cli_put(json, "correlation", correlation);
+    put_verdicts(json, f);
+    cli_put(json, "convex", json_null()); // asked of Fung laws only
+    cli_put_flag(json, "converged", f->converged);
+    cli_put_text(json, "reason", f->reason);
+    cli_put_integer(json, "points", f->points);
+    cli_put(json, "data", curves_json(o));
     sn_exponentials e;
-    if (compress(o, &e))
-        json_object_set_new(json, "memory_as_exponentials",
-                            json_pack("{s:i, s:o, s:[f,f], s:o, s:o, s:o}", "terms", e.terms,
-                                      "max_error", cli_number(e.max_error), "band_s", e.t_min,
-                                      e.t_max, "g_infinity", cli_number(e.g_inf), "g",
-                                      cli_numbers(e.terms, e.g), "tau_s",
-                                      cli_numbers(e.terms, e.tau)));
-    if (o->has_held_out) {
-        json_t *rows = json_array();
-        for (int k = 0; k < o->data->count; k++) {
-            const sn_fit_curve *c = &o->held_out[k].prediction;
-            json_array_append_new(rows, json_pack("{s:s, s:o, s:o, s:o}", "file", o->data->path[k],
-                                                  "rmse_Pa", cli_number(c->rmse), "rmse_over_peak",
-                                                  cli_number(c->rmse / c->peak), "r_squared",
-                                                  cli_number(c->r_squared)));
-        }
-        json_object_set_new(json, "held_out", rows);
-    }
+    if (compress(o, &e)) cli_put(json, "memory_as_exponentials", cli_exponentials(&e));
+    if (o->has_held_out) cli_put(json, "held_out", held_out_json(o));
     return json;
 }
 

@@ -36,14 +36,45 @@ void cli_progress_end(cli_progress *progress) {
     if (progress->shown && progress->terminal) fputs("\r\033[K", stderr);
 }
 
-json_t *cli_number(double value) {
+static json_t *number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
+}
+
+void cli_put(json_t *object, const char *key, json_t *value) {
+    json_object_set_new(object, key, value);
+}
+
+void cli_put_number(json_t *object, const char *key, double value) {
+    cli_put(object, key, number(value));
+}
+
+void cli_put_integer(json_t *object, const char *key, long value) {
+    cli_put(object, key, json_integer(value));
+}
+
+void cli_put_text(json_t *object, const char *key, const char *text) {
+    cli_put(object, key, json_string(text));
+}
+
+void cli_put_flag(json_t *object, const char *key, bool value) {
+    cli_put(object, key, json_boolean(value));
 }
 
 json_t *cli_numbers(int count, const double *values) {
     json_t *array = json_array();
-    for (int i = 0; i < count; i++) json_array_append_new(array, cli_number(values[i]));
+    for (int i = 0; i < count; i++) json_array_append_new(array, number(values[i]));
     return array;
+}
+
+json_t *cli_exponentials(const sn_exponentials *e) {
+    json_t *json = json_object();
+    cli_put_integer(json, "terms", e->terms);
+    cli_put_number(json, "max_error", e->max_error);
+    cli_put(json, "band_s", cli_numbers(2, (double[]){e->t_min, e->t_max}));
+    cli_put_number(json, "g_infinity", e->g_inf);
+    cli_put(json, "g", cli_numbers(e->terms, e->g));
+    cli_put(json, "tau_s", cli_numbers(e->terms, e->tau));
+    return json;
 }
 
 #define JSON_STYLE (JSON_INDENT(2) | JSON_REAL_PRECISION(12))

@@ -6,34 +6,50 @@
 
 #include "cli/cli.h"
 
+// the last row of the history
 static json_t *probes_json(const sn_record *history) {
     json_t *probes = json_object();
     for (int k = 1; history->rows > 0 && k < history->series_count; k++)
-        json_object_set_new(probes, history->series[k].name,
-                            cli_number(history->series[k].value[history->rows - 1]));
+        cli_put_number(probes, history->series[k].name,
+                       history->series[k].value[history->rows - 1]);
     return probes;
 }
 
+static void put_cost(json_t *json, const sn_run_summary *s) {
+    cli_put_number(json, "step_s", s->step_s);
+    cli_put_integer(json, "steps", s->steps);
+    cli_put_number(json, "simulated_s", s->simulated_s);
+    cli_put_number(json, "wall_s", s->wall_s);
+    cli_put_number(json, "real_time_factor", s->real_time_factor);
+    cli_put_number(json, "step_wall_p50_s", s->step_wall_p50_s);
+    cli_put_number(json, "step_wall_p99_s", s->step_wall_p99_s);
+    cli_put_number(json, "step_wall_max_s", s->step_wall_max_s);
+    cli_put_integer(json, "threads", s->threads);
+    cli_put_integer(json, "newton_iterations", s->newton_iterations);
+    cli_put_integer(json, "cutbacks", s->cutbacks);
+}
+
 static json_t *summary_json(const sn_run_summary *s, const sn_record *history) {
-    json_t *json = json_pack(
-        "{s:s, s:s, s:i, s:i, s:i, s:i, s:o, s:I, s:o, s:o, s:o, s:o, s:o, s:o}", "engine",
-        s->engine, "model", s->model, "nodes", s->nodes, "cells", s->cells, "springs", s->springs,
-        "unknowns", s->unknowns, "step_s", cli_number(s->step_s), "steps", (json_int_t)s->steps,
-        "simulated_s", cli_number(s->simulated_s), "wall_s", cli_number(s->wall_s),
-        "real_time_factor", cli_number(s->real_time_factor), "step_wall_p50_s",
-        cli_number(s->step_wall_p50_s), "step_wall_p99_s", cli_number(s->step_wall_p99_s),
-        "step_wall_max_s", cli_number(s->step_wall_max_s));
-    json_object_update_new(
-        json,
-        json_pack("{s:o, s:o, s:o, s:o, s:o, s:i, s:o, s:[o,o], s:i, s:i, s:i, s:b, s:s, s:s, s:o}",
-                  "kinetic_J", cli_number(s->kinetic_J), "elastic_J", cli_number(s->elastic_J),
-                  "dissipated_J", cli_number(s->dissipated_J), "external_work_J",
-                  cli_number(s->external_work_J), "energy_residual", cli_number(s->energy_residual),
-                  "memory_terms", s->memory_terms, "memory_error", cli_number(s->memory_error),
-                  "memory_band_s", cli_number(s->memory_band_s[0]), cli_number(s->memory_band_s[1]),
-                  "threads", s->threads, "newton_iterations", s->newton_iterations, "cutbacks",
-                  s->cutbacks, "converged", s->converged, "reason", s->reason, "note", s->note,
-                  "probes", probes_json(history)));
+    json_t *json = json_object();
+    cli_put_text(json, "engine", s->engine);
+    cli_put_text(json, "model", s->model);
+    cli_put_integer(json, "nodes", s->nodes);
+    cli_put_integer(json, "cells", s->cells);
+    cli_put_integer(json, "springs", s->springs);
+    cli_put_integer(json, "unknowns", s->unknowns);
+    put_cost(json, s);
+    cli_put_number(json, "kinetic_J", s->kinetic_J);
+    cli_put_number(json, "elastic_J", s->elastic_J);
+    cli_put_number(json, "dissipated_J", s->dissipated_J);
+    cli_put_number(json, "external_work_J", s->external_work_J);
+    cli_put_number(json, "energy_residual", s->energy_residual);
+    cli_put_integer(json, "memory_terms", s->memory_terms);
+    cli_put_number(json, "memory_error", s->memory_error);
+    cli_put(json, "memory_band_s", cli_numbers(2, s->memory_band_s));
+    cli_put_flag(json, "converged", s->converged);
+    cli_put_text(json, "reason", s->reason);
+    cli_put_text(json, "note", s->note);
+    cli_put(json, "probes", probes_json(history));
     return json;
 }
 

@@ -40,12 +40,25 @@ static double peak_of(const sn_record *record) {
 // the memory as exponentials over the test, with the error that this costs
 static json_t *memory_json(const sn_tissue *tissue, double duration) {
     sn_exponentials e;
-    if (sn_memory_compress(&tissue->memory, 1e-4 * duration, duration, 1e-3, &e) != SN_OK)
-        return json_null();
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:[f,f]}", "terms", e.terms, "max_error",
-                     cli_number(e.max_error), "g_infinity", cli_number(e.g_inf), "g",
-                     cli_numbers(e.terms, e.g), "tau_s", cli_numbers(e.terms, e.tau), "band_s",
-                     e.t_min, e.t_max);
+    bool done = sn_memory_compress(&tissue->memory, 1e-4 * duration, duration, 1e-3, &e) == SN_OK;
+    return done ? cli_exponentials(&e) : json_null();
+}
+
+static json_t *test_json(const sn_tissue *tissue, const sn_record *record,
+                         const sn_fit_curve *prediction) {
+    double duration = sn_record_values(record, "time")[record->rows - 1];
+    json_t *json = json_object();
+    cli_put_text(json, "tissue", tissue->name);
+    cli_put_integer(json, "points", record->rows);
+    cli_put_number(json, "peak_stress_Pa", peak_of(record));
+    cli_put_number(json, "duration_s", duration);
+    cli_put(json, "memory", memory_json(tissue, duration));
+    if (prediction) {
+        cli_put_number(json, "rmse_Pa", prediction->rmse);
+        cli_put_number(json, "rmse_over_peak", prediction->rmse / prediction->peak);
+        cli_put_number(json, "r_squared", prediction->r_squared);
+    }
+    return json;
 }
 
 static int finish(const cli_arguments *arguments, const sn_tissue *tissue, sn_record *record,
@@ -57,16 +70,7 @@ static int finish(const cli_arguments *arguments, const sn_tissue *tissue, sn_re
     if (status != SN_OK) return cli_fail(status);
     double duration = sn_record_values(record, "time")[record->rows - 1];
     if (arguments->json) {
-        json_t *json =
-            json_pack("{s:s, s:i, s:o, s:o, s:o}", "tissue", tissue->name, "points", record->rows,
-                      "peak_stress_Pa", cli_number(peak_of(record)), "duration_s",
-                      cli_number(duration), "memory", memory_json(tissue, duration));
-        if (prediction)
-            json_object_update_new(json, json_pack("{s:o, s:o, s:o}", "rmse_Pa",
-                                                   cli_number(prediction->rmse), "rmse_over_peak",
-                                                   cli_number(prediction->rmse / prediction->peak),
-                                                   "r_squared", cli_number(prediction->r_squared)));
-        cli_print_json(json);
+        cli_print_json(test_json(tissue, record, prediction));
     } else if (!arguments->quiet) {
         printf("tissue \"%s\": %d points over %s, peak stress %s\n", tissue->name, record->rows,
                cli_show(duration, "s"), cli_show(peak_of(record), "Pa"));

@@ -133,3 +133,9 @@ void sn_case_free_motions(const sn_case *c, char text[SN_TEXT_MAX]) {
         for (int r = 0; r < count; r++)
             if (lead[r] == mode) append_motion(text, null[r], mode);
 }
+
+int sn_case_carried_by(const sn_case *c) {
+    bool alone = c->support_count == 0 && c->tool_count == 0 && c->load_count == 1 &&
+                 c->load[0].kind == SN_LOAD_DISPLACEMENT && norm3(c->gravity) == 0;
+    return alone ? c->load[0].surface : -1;
+}

@@ -188,7 +188,7 @@ static void test_block(void **state) {
 #define TET_NODES_41 "$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
 
 static const hostile refused_text[] = {
-    {"", SN_E_SYNTAX, ":1: found '', expected $MeshFormat", NULL},
+    {"", SN_E_SYNTAX, ":1: found \"\", expected $MeshFormat", NULL},
     {"solid cube\n", SN_E_SYNTAX, ":1: found \"solid\", expected $MeshFormat", NULL},
     {"$MeshFormat\n2.2 1 8\n\1\n", SN_E_UNSUPPORTED, ":2: $MeshFormat: found a binary file",
      "-format msh41 -o"},
@@ -222,7 +222,7 @@ static const hostile refused_text[] = {
      "coordinate"},
     {HEAD_22 "$Nodes\n1\n1 0 0 0 0\n$EndNodes\n", SN_E_SYNTAX, "found \"0\" after the last number",
      NULL},
-    {HEAD_22 "$Nodes\n1\n1 0 0,5 0\n$EndNodes\n", SN_E_SYNTAX, "found '0,5'", NULL},
+    {HEAD_22 "$Nodes\n1\n1 0 0,5 0\n$EndNodes\n", SN_E_SYNTAX, "found \"0,5\"", NULL},
     {HEAD_22 TET_NODES ELEMENTS("1", "1 4 2 0 1 1 2 3 5\n"), SN_E_SYNTAX,
      ":13: $Elements: found node 5, expected one of the 4", NULL},
     {HEAD_22 TET_NODES ELEMENTS("1", "1 5 2 0 1 1 2 3 4 1 2 3 4\n"), SN_E_UNSUPPORTED,

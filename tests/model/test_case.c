@@ -76,6 +76,22 @@ static void free_motions(void **state) {
 }
 
 // A single triangle, edge or node is held: surfaces that a reader may bring.
+static void carried_along(void **state) {
+    (void)state;
+    sn_case *c = block_case();
+    assert_int_equal(sn_case_carried_by(c), -1);
+    c->load = sn_alloc(2, sizeof *c->load);
+    c->load_count = 1;
+    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT, .surface = 3, .vector = {1e-3, 0, 0}};
+    assert_int_equal(sn_case_carried_by(c), 3);
+    c->gravity[2] = -9.81;
+    assert_int_equal(sn_case_carried_by(c), -1);
+    c->gravity[2] = 0;
+    hold(c, "left", "x");
+    assert_int_equal(sn_case_carried_by(c), -1);
+    sn_case_destroy(c);
+}
+
 static void free_motions_of_few_nodes(void **state) {
     (void)state;
     sn_case *c = block_case();
@@ -244,13 +260,10 @@ static void defaults(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(prescribed),
-        cmocka_unit_test(free_motions),
-        cmocka_unit_test(free_motions_of_few_nodes),
-        cmocka_unit_test(on_mesh),
-        cmocka_unit_test(columns),
-        cmocka_unit_test(axes),
-        cmocka_unit_test(penalty),
+        cmocka_unit_test(prescribed),    cmocka_unit_test(free_motions),
+        cmocka_unit_test(carried_along), cmocka_unit_test(free_motions_of_few_nodes),
+        cmocka_unit_test(on_mesh),       cmocka_unit_test(columns),
+        cmocka_unit_test(axes),          cmocka_unit_test(penalty),
         cmocka_unit_test(defaults),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,212 @@
+// A run on its way: steps that are cut back where Newton fails and grow again where it does not.
+// SPDX-License-Identifier: Apache-2.0
+//
+// What acts at time 0 already (gravity, constant loads, a history that starts with a jump) is
+// brought on first, in as few instantaneous steps as it takes. Then come the steps in time. The
+// guess for a step is extrapolated from the last two states; after a corner of a history, or where
+// that fails, the tangent at the start of the step carries the prescribed increments into the body.
+#include "continuum/march.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { CUTBACKS = 12 };     // halvings of the shortest planned step
+#define REGROW 1.5          // of the step after a success
+#define PROGRESS_EVERY 0.25 // seconds between two texts
+
+//---- life ---------------------------------------------------------------------------------------
+
+static bool remembers(const sn_case *c) {
+    const sn_memory none = sn_memory_none();
+    for (int r = 0; r < c->mesh->region_count; r++)
+        if (c->tissue[r].memory.law != none.law) return true;
+    return false;
+}
+
+sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *output,
+                           sn_run_summary *summary, sn_record *history) {
+    *m = (sn_fe_march){.c = c, .output = output, .summary = summary, .history = history};
+    m->limit = (double)INFINITY;
+    m->told = sn_clock();
+    SN_TRY(sn_fe_schedule_create(c, remembers(c), &m->schedule));
+    SN_TRY(sn_fe_problem_create(c, m->schedule.shortest, &m->problem));
+    SN_TRY(sn_fe_newton_init(&m->newton, m->problem, c->continuum.tolerance));
+    SN_TRY(sn_case_history_columns(c, history));
+    SN_TRY(sn_fe_measure_create(m->problem, history, output && output->frame, &m->measure));
+    size_t dofs = (size_t)m->problem->space->dofs;
+    m->x = sn_alloc(dofs, sizeof *m->x);
+    m->older = sn_alloc(dofs, sizeof *m->older);
+    m->guess = sn_alloc(dofs, sizeof *m->guess);
+    m->force = sn_alloc(dofs, sizeof *m->force);
+    return m->x && m->older && m->guess && m->force ? SN_OK : SN_E_MEMORY;
+}
+
+void sn_fe_march_free(sn_fe_march *m) {
+    sn_fe_measure_destroy(m->measure, m->c);
+    sn_fe_newton_free(&m->newton);
+    sn_fe_problem_destroy(m->problem);
+    sn_fe_schedule_free(&m->schedule);
+    sn_free(m->x);
+    sn_free(m->older);
+    sn_free(m->guess);
+    sn_free(m->force);
+    sn_free(m->wall);
+}
+
+//---- one step -----------------------------------------------------------------------------------
+
+static void extrapolate(sn_fe_march *m, double step) {
+    const sn_fe_problem *p = m->problem;
+    double by = step / m->last_step;
+    for (int d = 0; d < p->space->dofs; d++) m->guess[d] = m->x[d] + by * (m->x[d] - m->older[d]);
+    for (int d = 0; d < 3 * p->space->nodes; d++)
+        if (p->pattern->row[d] == SN_FE_PRESCRIBED) m->guess[d] = p->prescribed[d];
+}
+
+static sn_status attempt(sn_fe_march *m, sn_fe_level level, sn_fe_outcome *out) {
+    size_t bytes = (size_t)m->problem->space->dofs * sizeof *m->x;
+    sn_fe_problem_begin(m->problem, level);
+    if (m->last_step > 0.0 && level.step > 0.0) {
+        extrapolate(m, level.step);
+        SN_TRY(sn_fe_newton_solve(&m->newton, false, m->guess, out));
+        m->summary->newton_iterations += out->iterations;
+        if (out->converged) return SN_OK;
+    }
+    memcpy(m->guess, m->x, bytes);
+    SN_TRY(sn_fe_newton_solve(&m->newton, true, m->guess, out));
+    m->summary->newton_iterations += out->iterations;
+    return SN_OK;
+}
+
+// Takes the guess as the new state.
+static void accept(sn_fe_march *m, sn_fe_level level, const sn_fe_outcome *out) {
+    sn_fe_problem *p = m->problem;
+    double work = 0.0;
+    for (int d = 0; d < 3 * p->space->nodes; d++) {
+        double force = p->residual[d] + p->external[d];
+        work += 0.5 * (force + m->force[d]) * (m->guess[d] - m->x[d]);
+        m->force[d] = force;
+    }
+    m->summary->external_work_J += work;
+    double *free = m->older;
+    m->older = m->x;
+    m->x = m->guess;
+    m->guess = free;
+    m->last_step = level.step;
+    m->rounded += out->rounded;
+    sn_fe_problem_commit(p, m->x, &out->balance);
+}
+
+static sn_status note_wall(sn_fe_march *m, double seconds, double step) {
+    sn_run_summary *s = m->summary;
+    if ((size_t)s->steps == m->wall_room) {
+        m->wall_room = 2 * m->wall_room + 64;
+        double *more = sn_resize(m->wall, m->wall_room, sizeof *more);
+        if (!more) return SN_E_MEMORY;
+        m->wall = more;
+    }
+    m->wall[s->steps++] = seconds;
+    s->step_s = s->step_s > 0.0 ? fmin(s->step_s, step) : step;
+    return SN_OK;
+}
+
+static void tell(sn_fe_march *m, double time) {
+    char text[SN_TEXT_MAX];
+    if (!m->output || !m->output->progress || sn_clock() - m->told < PROGRESS_EVERY) return;
+    m->told = sn_clock();
+    snprintf(text, sizeof text, "%.4g s of %.4g s, step %ld, %d Newton iterations", time,
+             m->c->until, m->summary->steps, m->summary->newton_iterations);
+    m->output->progress(m->output->context, time / m->c->until, text);
+}
+
+static void give_up(sn_fe_march *m, bool start, double at, double step, const char *why) {
+    m->stopped = true;
+    if (start)
+        snprintf(m->summary->reason, SN_TEXT_MAX,
+                 "only %.3g of the loads that act at time 0 could be applied, further %.3g failed: "
+                 "%.120s",
+                 at, step, why);
+    else
+        snprintf(m->summary->reason, SN_TEXT_MAX,
+                 "stopped at %.6g s of %.6g s, where a step of %.3g s still failed: %.120s", at,
+                 m->c->until, step, why);
+}
+
+//---- many steps ---------------------------------------------------------------------------------
+
+// From `at` to `end`: in time towards a stop of the schedule, or, at the start, in the scale of the
+// loads from 0 to 1.
+static sn_status walk(sn_fe_march *m, bool start, double at, double end, int stop) {
+    double least = (start ? 1.0 : m->schedule.shortest) / (1 << CUTBACKS);
+    while (at < end && !m->stopped) {
+        sn_fe_outcome out;
+        double clock = sn_clock(), room = fmin(m->wish, m->limit);
+        double step =
+            start ? fmin(room, end - at) : sn_fe_schedule_step(&m->schedule, stop, at, room);
+        double to = at + step > end - 1e-9 * step ? end : at + step;
+        sn_fe_level level = start ? (sn_fe_level){0.0, to, 0.0} : (sn_fe_level){to, 1.0, to - at};
+        SN_TRY(attempt(m, level, &out));
+        if (!out.converged) {
+            m->summary->cutbacks++;
+            if (0.5 * step < least) give_up(m, start, at, step, out.reason);
+            m->limit = 0.5 * step;
+            m->last_step = 0.0;
+            continue;
+        }
+        accept(m, level, &out);
+        at = to;
+        m->wish *= SN_FE_GROWTH;
+        m->limit *= REGROW;
+        if (start) continue;
+        SN_TRY(note_wall(m, sn_clock() - clock, level.step));
+        tell(m, at);
+    }
+    m->summary->simulated_s = start ? 0.0 : at;
+    return SN_OK;
+}
+
+// Brings on what acts at time 0.
+static sn_status into_start(sn_fe_march *m) {
+    sn_fe_problem *p = m->problem;
+    sn_fe_balance balance;
+    double moved = 0.0;
+    sn_fe_problem_begin(p, (sn_fe_level){0.0, 1.0, 0.0});
+    sn_fe_problem_balance(p, m->x, &balance);
+    for (int d = 0; d < 3 * p->space->nodes; d++)
+        if (p->pattern->row[d] == SN_FE_PRESCRIBED) moved = fmax(moved, fabs(p->prescribed[d]));
+    if (balance.reference == 0.0 && moved == 0.0) return SN_OK;
+    if (p->materials->viscous) {
+        snprintf(
+            m->summary->note, SN_TEXT_MAX,
+            "a tissue has a Voigt viscosity, so what jumps at time 0 acts over the first step");
+        sn_fe_problem_begin(p, (sn_fe_level){0.0, 0.0, 0.0});
+        sn_fe_problem_balance(p, m->x, &balance);
+        return SN_OK;
+    }
+    m->wish = 1.0;
+    SN_TRY(walk(m, true, 0.0, 1.0, 0));
+    m->limit = (double)INFINITY;
+    return SN_OK;
+}
+
+static sn_status record(sn_fe_march *m) {
+    SN_TRY(sn_fe_measure_row(m->measure, m->problem, m->x, m->history));
+    return sn_fe_measure_frame(m->measure, m->problem, m->x, m->output);
+}
+
+sn_status sn_fe_march_go(sn_fe_march *m) {
+    const sn_fe_schedule *s = &m->schedule;
+    SN_TRY(into_start(m));
+    for (int k = 0; k < s->count && !m->stopped; k++) {
+        if (k > 0) SN_TRY(walk(m, false, s->stop[k - 1].time, s->stop[k].time, k));
+        if (m->stopped) break;
+        if (s->stop[k].output) SN_TRY(record(m));
+        if (s->stop[k].corner) {
+            m->wish = fmin(s->stop[k].first, s->longest);
+            m->last_step = 0.0;
+        }
+        m->wish = fmin(m->wish, s->longest);
+    }
+    return SN_OK;
+}

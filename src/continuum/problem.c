@@ -1,0 +1,153 @@
+// The discrete problem: the balance of forces at a state, its tangent, and what a step remembers.
+// SPDX-License-Identifier: Apache-2.0
+#include "continuum/problem.h"
+
+#include <math.h>
+#include <string.h>
+
+// Forces that belong to strains below 1e-5 are compared with the forces of a strain of 1e-5:
+// Newton's tolerance (1e-9 or so of it) then lies above what rounding does to a body that is only
+// turned or not loaded at all.
+static double rounding_reference(const sn_fe_problem *p) {
+    double stiff = 0.0;
+    for (int r = 0; r < p->materials->count; r++) {
+        sn_moduli moduli;
+        sn_tissue_moduli(p->c->tissue + r, &moduli);
+        stiff = fmax(stiff, moduli.shear + (p->space->element.mixed ? 0.0 : moduli.bulk));
+    }
+    return 1e-5 * stiff * cbrt(pow(sn_mesh_volume(p->c->mesh), 2));
+}
+
+static void integrate_pressures(sn_fe_problem *p) {
+    const sn_fe_space *s = p->space;
+    int width = s->batch_cells;
+    for (int b = 0; b < s->batches; b++) {
+        const int *node = s->node + (size_t)b * (size_t)(s->element.nodes * width);
+        for (int k = 0; k < 4; k++)
+            for (int c = 0; c < s->batch_count[b]; c++)
+                p->flux_scale[node[k * width + c]] += 0.25 * s->volume[b * width + c];
+    }
+}
+
+void sn_fe_problem_destroy(sn_fe_problem *p) {
+    if (!p) return;
+    sn_fe_solver_destroy(p->solver);
+    sn_fe_boundary_destroy(p->boundary, p->c);
+    sn_fe_materials_destroy(p->materials);
+    sn_fe_pattern_destroy(p->pattern);
+    sn_fe_space_destroy(p->space);
+    void *const parts[] = {p->work,     p->entry,  p->prescribed, p->residual,
+                           p->external, p->lifted, p->flux_scale};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
+    sn_free(p);
+}
+
+sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem **problem) {
+    sn_status status = SN_OK;
+    sn_fe_problem *p = *problem = sn_alloc(1, sizeof *p);
+    if (!p) return SN_E_MEMORY;
+    p->c = c;
+    SN_TRY_GOTO(status, sn_fe_space_create(c, &p->space));
+    SN_TRY_GOTO(status, sn_fe_materials_create(c, p->space, shortest, &p->materials));
+    SN_TRY_GOTO(status, sn_fe_boundary_create(c, p->space, &p->boundary));
+    sn_fe_rigid_find(p->space);
+    SN_TRY_GOTO(status, sn_fe_rigid_check(p->space, c, p->boundary));
+    SN_TRY_GOTO(status, sn_fe_pattern_create(p->space, &p->pattern));
+    size_t dofs = (size_t)p->space->dofs;
+    p->work = sn_alloc(1, sizeof *p->work);
+    p->entry = sn_alloc((size_t)p->pattern->row_start[p->pattern->rows], sizeof *p->entry);
+    p->prescribed = sn_alloc(3 * (size_t)p->space->nodes, sizeof *p->prescribed);
+    p->residual = sn_alloc(dofs, sizeof *p->residual);
+    p->external = sn_alloc(dofs, sizeof *p->external);
+    p->lifted = sn_alloc(dofs, sizeof *p->lifted);
+    p->flux_scale = sn_alloc((size_t)p->space->corners, sizeof *p->flux_scale);
+    status = SN_E_MEMORY;
+    if (!p->work || !p->entry || !p->prescribed || !p->residual || !p->external || !p->lifted ||
+        !p->flux_scale)
+        goto fail;
+    p->least_reference = rounding_reference(p);
+    integrate_pressures(p);
+    status = SN_OK;
+    if (p->pattern->rows > 0)
+        SN_TRY_GOTO(status,
+                    sn_fe_solver_create(p->pattern, p->entry, p->boundary->symmetric, &p->solver));
+    sn_fe_problem_begin(p, (sn_fe_level){0.0, 0.0, 0.0});
+    return SN_OK;
+fail:
+    sn_fe_problem_destroy(p);
+    *problem = NULL;
+    return status;
+}
+
+void sn_fe_problem_begin(sn_fe_problem *p, sn_fe_level level) {
+    p->level = level;
+    sn_fe_materials_begin(p->materials, p->space, level.step);
+    sn_fe_space_prescribed(p->space, p->c, level.time, p->prescribed);
+    for (size_t n = 0; n < 3 * (size_t)p->space->nodes; n++) p->prescribed[n] *= level.scale;
+}
+
+static void measure(const sn_fe_problem *p, sn_fe_balance *out) {
+    const sn_fe_space *s = p->space;
+    double free = 0.0, held = 0.0, external = 0.0, flux = 0.0, scale = 0.0;
+    for (int n = 0; n < 3 * s->nodes; n++) {
+        double square = p->residual[n] * p->residual[n];
+        *(p->pattern->row[n] != SN_FE_PRESCRIBED ? &free : &held) += square;
+        external += p->external[n] * p->external[n];
+    }
+    for (int n = 3 * s->nodes, a = 0; n < s->dofs; n++, a++) {
+        flux += p->residual[n] * p->residual[n];
+        scale += p->flux_scale[a] * p->flux_scale[a];
+    }
+    out->force = sqrt(free);
+    out->reference = sqrt(fmax(held, external));
+    out->volume = scale > 0.0 ? sqrt(flux / scale) : 0.0;
+    double reference = fmax(fmax(out->reference, p->reference), p->least_reference);
+    out->error = fmax(out->force / reference, out->volume);
+    out->sound = isfinite(out->error);
+    if (!out->sound) out->fault = (sn_fe_fault){.cell = s->slot[0], .J = (double)NAN};
+}
+
+void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out) {
+    const sn_fe_space *s = p->space;
+    *out = (sn_fe_balance){.error = (double)INFINITY};
+    memset(p->residual, 0, (size_t)s->dofs * sizeof *p->residual);
+    memset(p->external, 0, (size_t)s->dofs * sizeof *p->external);
+    for (int b = 0; b < s->batches; b++) {
+        if (!sn_fe_points_at(s, p->materials, b, x, 0, &p->work->points, &out->fault)) return;
+        sn_fe_cell_forces(s, b, p->work, p->residual);
+    }
+    sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external, NULL);
+    for (int n = 0; n < s->dofs; n++) p->residual[n] -= p->external[n];
+    measure(p, out);
+}
+
+void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift) {
+    const sn_fe_space *s = p->space;
+    sn_fe_matrix matrix = {p->pattern, s, p->entry, lift, p->lifted};
+    sn_fe_fault fault;
+    memset(p->entry, 0, (size_t)p->pattern->row_start[p->pattern->rows] * sizeof *p->entry);
+    memset(p->lifted, 0, (size_t)s->dofs * sizeof *p->lifted);
+    for (int b = 0; b < s->batches; b++) {
+        bool good = sn_fe_points_at(s, p->materials, b, x, SN_FE_TANGENT, &p->work->points, &fault);
+        SN_ASSERT(good);
+        (void)good;
+        sn_fe_cell_tangent(s, p->materials->material + s->batch_region[b], b, p->work, &matrix);
+    }
+    memset(p->external, 0, (size_t)s->dofs * sizeof *p->external);
+    sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external,
+                         &matrix);
+}
+
+void sn_fe_problem_commit(sn_fe_problem *p, const double *x, const sn_fe_balance *balance) {
+    const sn_fe_space *s = p->space;
+    sn_fe_fault fault;
+    for (int b = 0; b < s->batches; b++) {
+        if (!p->materials->material[s->batch_region[b]].remembers) continue;
+        bool good = sn_fe_points_at(s, p->materials, b, x, 0, &p->work->points, &fault);
+        SN_ASSERT(good);
+        (void)good;
+        sn_fe_materials_commit(p->materials, s, b, p->work->points.T);
+    }
+    sn_fe_boundary_commit(p->boundary, p->c);
+    p->reference = fmax(p->reference, balance->reference);
+}

@@ -1,0 +1,57 @@
+// The discrete problem: the balance of forces at a state, its tangent, and what a step remembers.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "continuum/boundary.h"
+#include "continuum/cell.h"
+#include "continuum/rigid.h"
+#include "continuum/solver.h"
+
+/// Where in the programme a step ends.
+typedef struct sn_fe_level {
+    double time;  ///< s
+    double scale; ///< of all loads and prescribed motions: below 1 only on the way into time 0
+    double step;  ///< length in time, s; 0 for an instantaneous step
+} sn_fe_level;
+
+/// How far from balance a state is.
+typedef struct sn_fe_balance {
+    bool sound; ///< false: `fault` says where the state cannot be evaluated
+    sn_fe_fault fault;
+    double force;     ///< norm of the forces out of balance, N
+    double reference; ///< norm of the external forces or of the reactions, the larger, N
+    double volume;    ///< norm of the pressure equations relative to that of a volume strain of 1
+    double error;     ///< the larger of force/reference and volume
+} sn_fe_balance;
+
+typedef struct sn_fe_problem {
+    const sn_case *c;
+    sn_fe_space *space;
+    sn_fe_pattern *pattern;
+    sn_fe_materials *materials;
+    sn_fe_boundary *boundary;
+    sn_fe_solver *solver;
+    sn_fe_work *work;
+    sn_fe_level level;
+    double *entry;          ///< of the matrix                      (pattern->row_start[rows])
+    double *prescribed;     ///< at the level, m                    (3 x nodes)
+    double *residual;       ///< internal minus external forces     (dofs)
+    double *external;       ///< N                                  (dofs)
+    double *lifted;         ///< see sn_fe_matrix                   (dofs)
+    double *flux_scale;     ///< integrals of the pressures' shape functions, m3 (corners)
+    double reference;       ///< largest of the references of accepted steps, N
+    double least_reference; ///< below it forces are rounding, N
+} sn_fe_problem;
+
+/// Builds everything for a case. @param shortest  the shortest step that is planned, s
+sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem **problem);
+void sn_fe_problem_destroy(sn_fe_problem *p); // NULL is allowed
+/// Starts a step to a level.
+void sn_fe_problem_begin(sn_fe_problem *p, sn_fe_level level);
+/// Evaluates the balance at x: residual, external, norms.
+void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out);
+/// Evaluates the tangent at a sound x, for increments `lift` of prescribed unknowns (Nullable): see
+/// `lifted`.
+void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift);
+/// Accepts x as the end of the step: memory, contact, reference.
+void sn_fe_problem_commit(sn_fe_problem *p, const double *x, const sn_fe_balance *balance);

@@ -1,0 +1,211 @@
+// Rigid motions that the supports leave free, where the loads do not push along them.
+// SPDX-License-Identifier: Apache-2.0
+#include "continuum/rigid.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SEEN 1e-6     // part of a motion that a fixed direction must see
+#define BALANCED 1e-9 // resultant of a load along a motion, of the sum of its parts
+
+typedef double motion[6]; // translation, then rotation about the middle of the body
+
+static double dot6(const motion a, const motion b) {
+    double sum = 0.0;
+    for (int k = 0; k < 6; k++) sum += a[k] * b[k];
+    return sum;
+}
+
+// Displacement in direction d at r from the middle: t + w x r.
+static double moved(const motion m, const double r[3], int d) {
+    int a = (d + 1) % 3, b = (d + 2) % 3;
+    return m[d] + m[3 + a] * r[b] - m[3 + b] * r[a];
+}
+
+// The motion that a direction of a node sees, as a unit row.
+static void row_of(const sn_fe_space *s, int node, int d, motion row) {
+    double r[3];
+    for (int i = 0; i < 3; i++) r[i] = (s->rest[3 * node + i] - s->middle[i]) / s->size;
+    for (int k = 0; k < 6; k++) {
+        motion unit = {0};
+        unit[k] = 1.0;
+        row[k] = moved(unit, r, d);
+    }
+}
+
+// Makes v orthogonal to an orthonormal set, twice for rounding; returns the length left.
+static double reduce(motion *basis, int count, motion v) {
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < count; k++) {
+            double along = dot6(basis[k], v);
+            for (int i = 0; i < 6; i++) v[i] -= along * basis[k][i];
+        }
+    return sqrt(dot6(v, v));
+}
+
+static void keep(motion *basis, int *count, const motion v, double length) {
+    for (int i = 0; i < 6; i++) basis[*count][i] = v[i] / length;
+    (*count)++;
+}
+
+// What the fixed directions see: each time the row that is least seen so far.
+static int seen_motions(const sn_fe_space *s, motion *basis) {
+    int count = 0;
+    while (count < 6) {
+        motion best = {0};
+        double longest = 0.0;
+        for (int a = 0; a < s->nodes; a++)
+            for (int d = 0; d < 3; d++) {
+                motion v;
+                if (!(s->fixed[a] >> d & 1)) continue;
+                row_of(s, a, d, v);
+                double length = reduce(basis, count, v);
+                if (length > longest) {
+                    longest = length;
+                    memcpy(best, v, sizeof best);
+                }
+            }
+        if (longest < SEEN) break;
+        keep(basis, &count, best, longest);
+    }
+    return count;
+}
+
+// Pins by elimination with full pivoting: afterwards the motions are independent at the pins.
+static void choose_pins(sn_fe_space *s) {
+    motion left[6];
+    memcpy(left, s->free_motion, sizeof left);
+    for (int k = 0; k < s->free_motions; k++) {
+        double largest = 0.0, row[6];
+        int which = k;
+        for (int a = 0; a < s->corners; a++)
+            for (int d = 0; d < 3; d++) {
+                if (s->fixed[a] >> d & 1) continue;
+                row_of(s, a, d, row);
+                for (int j = k; j < s->free_motions; j++)
+                    if (fabs(dot6(left[j], row)) > largest * (1.0 + 1e-9)) {
+                        largest = fabs(dot6(left[j], row));
+                        which = j;
+                        s->pin[k] = 3 * a + d;
+                    }
+            }
+        motion swap;
+        memcpy(swap, left[k], sizeof swap);
+        memcpy(left[k], left[which], sizeof swap);
+        memcpy(left[which], swap, sizeof swap);
+        row_of(s, s->pin[k] / 3, s->pin[k] % 3, row);
+        for (int j = k + 1; j < s->free_motions; j++) {
+            double by = dot6(left[j], row) / dot6(left[k], row);
+            for (int i = 0; i < 6; i++) left[j][i] -= by * left[k][i];
+        }
+    }
+}
+
+static void find_size(sn_fe_space *s) {
+    double low[3] = {(double)INFINITY, (double)INFINITY, (double)INFINITY},
+           high[3] = {-(double)INFINITY, -(double)INFINITY, -(double)INFINITY};
+    for (int n = 0; n < 3 * s->corners; n++) {
+        low[n % 3] = fmin(low[n % 3], s->rest[n]);
+        high[n % 3] = fmax(high[n % 3], s->rest[n]);
+    }
+    s->size = 0.0;
+    for (int i = 0; i < 3; i++) {
+        s->middle[i] = 0.5 * (low[i] + high[i]);
+        s->size = fmax(s->size, high[i] - low[i]);
+    }
+}
+
+void sn_fe_rigid_find(sn_fe_space *s) {
+    motion basis[6];
+    find_size(s);
+    int seen = seen_motions(s, basis), count = seen;
+    while (count < 6) { // complete the basis: each time the unit motion that is least in it
+        motion best = {0};
+        double longest = 0.0;
+        for (int k = 0; k < 6; k++) {
+            motion v = {0};
+            v[k] = 1.0;
+            double length = reduce(basis, count, v);
+            if (length > longest) {
+                longest = length;
+                memcpy(best, v, sizeof best);
+            }
+        }
+        keep(basis, &count, best, longest);
+    }
+    s->free_motions = 6 - seen;
+    memcpy(s->free_motion, basis + seen, (size_t)s->free_motions * sizeof *basis);
+    choose_pins(s);
+}
+
+static bool balanced(const sn_fe_space *s, const double *force) {
+    double total = 0.0;
+    for (int n = 0; n < 3 * s->nodes; n++) total += fabs(force[n]);
+    for (int k = 0; k < s->free_motions; k++) {
+        double along = 0.0;
+        for (int n = 0; n < 3 * s->nodes; n++) {
+            motion row;
+            if (force[n] == 0.0) continue;
+            row_of(s, n / 3, n % 3, row);
+            along += force[n] * dot6(s->free_motion[k], row);
+        }
+        if (fabs(along) > BALANCED * total) return false;
+    }
+    return true;
+}
+
+sn_status sn_fe_rigid_check(const sn_fe_space *s, const sn_case *c, sn_fe_boundary *b) {
+    char motions[SN_TEXT_MAX];
+    if (s->free_motions == 0) return SN_OK;
+    sn_case_free_motions(c, motions);
+    const char *why = c->tool_count > 0 ? "a tool may push along it" : NULL;
+    double *force = sn_alloc((size_t)s->dofs, sizeof *force);
+    double *rest = sn_alloc((size_t)s->dofs, sizeof *rest);
+    for (int k = -1; force && rest && k < c->load_count && !why; k++) {
+        memset(force, 0, (size_t)s->dofs * sizeof *force);
+        sn_fe_boundary_load(b, c, s, k, rest, force);
+        if (!balanced(s, force)) why = k < 0 ? "gravity pushes along it" : "a load pushes along it";
+    }
+    bool memory = force && rest;
+    sn_free(force);
+    sn_free(rest);
+    if (!memory) return SN_E_MEMORY;
+    if (!why) return SN_OK;
+    return sn_fail(SN_E_DEFINITION,
+                   "the supports leave rigid motion free: %s; %s: fix more directions or surfaces",
+                   motions, why);
+}
+
+// Solves the symmetric positive definite system in place by Gauss elimination.
+static void solve(double G[6][7], int n) {
+    for (int k = 0; k < n; k++)
+        for (int i = 0; i < n; i++) {
+            double by = i == k ? 0.0 : G[i][k] / G[k][k];
+            for (int j = k; j <= n; j++) G[i][j] -= by * G[k][j];
+        }
+    for (int k = 0; k < n; k++) G[k][n] /= G[k][k];
+}
+
+void sn_fe_rigid_project(const sn_fe_space *s, const int *row, const double *x, double *increment) {
+    int n = s->free_motions;
+    double G[6][7] = {{0}};
+    if (n == 0) return;
+    for (int pass = 0; pass < 2; pass++) { // sums, then the subtraction
+        for (int a = 0; a < s->nodes; a++) {
+            double r[3];
+            for (int i = 0; i < 3; i++)
+                r[i] = (s->rest[3 * a + i] + x[3 * a + i] - s->middle[i]) / s->size;
+            for (int d = 0; d < 3; d++) {
+                double v[6];
+                if (row[3 * a + d] == SN_FE_PRESCRIBED) continue;
+                for (int k = 0; k < n; k++) v[k] = moved(s->free_motion[k], r, d);
+                for (int k = 0; k < n; k++) {
+                    if (pass) increment[3 * a + d] -= G[k][n] * v[k];
+                    for (int j = 0; j < n && !pass; j++) G[k][j] += v[k] * v[j];
+                    if (!pass) G[k][n] += v[k] * increment[3 * a + d];
+                }
+            }
+        }
+        if (!pass) solve(G, n);
+    }
+}
