@@ -62,8 +62,8 @@ typedef struct sn_shape_def {
 /// (cells too thin), SN_E_MEMORY.
 SN_API sn_status sn_mesh_build(const sn_shape_def *def, sn_mesh **mesh);
 /// A mesh of zeros with room for so many things (surfaces still without faces): for readers.
-SN_API sn_status sn_mesh_create(int node_count, int cell_count, int region_count,
-                                int surface_count, sn_mesh **mesh);
+SN_API sn_status sn_mesh_create(int node_count, int cell_count, int region_count, int surface_count,
+                                sn_mesh **mesh);
 SN_API void sn_mesh_destroy(sn_mesh *mesh); // NULL is allowed
 /// Checks indices, finite coordinates, unused nodes, flat cells; turns inverted cells round; finds
 /// the cell behind every surface face and orients the face outwards. Adds the surface "boundary"
@@ -209,8 +209,8 @@ SN_API void sn_case_prescribed(const sn_case *c, double t, unsigned char *fixed,
 /// Which rigid motions the supports and prescribed motions leave free, as text for a message, such
 /// as "translation along z, rotation about x"; empty when none.
 SN_API void sn_case_free_motions(const sn_case *c, char text[SN_TEXT_MAX]);
-/// The surface whose prescribed motion is all that acts on the body, so that at rest it would only be
-/// carried along undeformed (as a rule, the supports were forgotten); -1 when there is more.
+/// The surface whose prescribed motion is all that acts on the body, so that at rest it would only
+/// be carried along undeformed (as a rule, the supports were forgotten); -1 when there is more.
 SN_API int sn_case_carried_by(const sn_case *c);
 /// Names of the history columns of the case in the order engines fill them: time, then for a point
 /// probe NAME_ux NAME_uy NAME_uz [m], for a reaction or a tool NAME_fx NAME_fy NAME_fz [N].

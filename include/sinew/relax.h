@@ -22,9 +22,9 @@ typedef struct sn_memory_law {
     void (*modulus)(const double *value, int terms, double w, double out[2]); ///< G'(w), G''(w)
     double (*equilibrium)(const double *value, int terms);                    ///< G(infinity)
     double (*impulse)(const double *value, int terms); ///< Nullable: seconds in front of delta(t)
-    /// G as exponentials at every t >= 0: terms, g, tau, g_inf, viscous of a zeroed `out`. max_error
-    /// stays 0 where the sum is G itself; else it bounds the error, and is at most the tolerance
-    /// unless SN_TERMS_MAX terms do not reach it.
+    /// G as exponentials at every t >= 0: terms, g, tau, g_inf, viscous of a zeroed `out`.
+    /// max_error stays 0 where the sum is G itself; else it bounds the error, and is at most the
+    /// tolerance unless SN_TERMS_MAX terms do not reach it.
     void (*expand)(const double *value, int terms, double tolerance, struct sn_exponentials *out);
 } sn_memory_law;
 

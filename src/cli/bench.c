@@ -55,7 +55,9 @@ static json_t *row_json(const sn_springs_bench_row *r) {
 
 static void print_row(const sn_springs_bench_row *r) {
     double speed = r->springs_per_second > 0 ? r->springs_per_second : r->cells_per_second;
-    printf("%-16s %6d %8d %8d %6d  %-7s %9.1f M %-9s %9.1f M  %4.0f %%\n", r->model, r->nodes,
+    char model[SN_NAME_MAX + 8];
+    snprintf(model, sizeof model, "%s%s", r->model, r->volume ? "+volume" : "");
+    printf("%-16s %6d %8d %8d %6d  %-7s %9.1f M %-9s %9.1f M  %4.0f %%\n", model, r->nodes,
            r->springs, r->cells, r->memory_terms, r->precision == SN_SINGLE ? "single" : "double",
            1e-6 * speed, r->springs_per_second > 0 ? "springs/s" : "cells/s",
            1e-6 * r->bound_per_second, 100 * speed / r->bound_per_second);

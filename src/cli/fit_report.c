@@ -178,13 +178,18 @@ static void parameter_table(sn_report *report, const sn_fit_result *f) {
         snprintf(text[k][0], sizeof text[k][0], "%s", shown_value(p));
         snprintf(text[k][1], sizeof text[k][1], "%s … %s", cli_show(p->ci95[0], p->unit),
                  cli_show(p->ci95[1], p->unit));
-        snprintf(text[k][2], sizeof text[k][2], "%s", p->identifiable ? "yes" : p->reason);
+        snprintf(text[k][2], sizeof text[k][2], "%s",
+                 p->fixed          ? "not asked"
+                 : p->identifiable ? "yes"
+                                   : p->reason);
         cells[n++] = p->name, cells[n++] = text[k][0];
         cells[n++] = p->fixed ? "held" : text[k][1], cells[n++] = text[k][2];
     }
-    sn_report_table(report, f->param_count + 1, 4, cells,
-                    "Constants. Elastic constants are instantaneous, G(0) = 1; intervals are "
-                    "linearised at the optimum, in the logarithm where the constant is positive.");
+    sn_report_table(
+        report, f->param_count + 1, 4, cells,
+        "Constants. Elastic constants are instantaneous, G(0) = 1; intervals are "
+        "linearised at the optimum, in the logarithm where the constant is positive, or "
+        "likelihood profiles where that would be too wide to trust.");
 }
 
 // what the law misses: the curve and the point with the largest residual
