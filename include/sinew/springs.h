@@ -52,7 +52,12 @@ SN_API void sn_state_positions(const sn_net *net, const sn_state *state, double 
 SN_API void sn_state_tool_force(const sn_net *net, const sn_state *state, int tool,
                                 double force[3]);
 
-/// Runs a case to its end. Fields as in sn_continuum_run(), velocity [m/s] in addition.
+/// Runs a case to its end. Fields as in sn_continuum_run(), velocity [m/s] in addition; frames and
+/// rows at time 0, every output_every, and at the end. Reactions are what supports and prescribed
+/// motion give the body (mass times acceleration less all other forces there), tool forces what the
+/// tissue gives the tool. summary->elastic_J is W + U of the instantaneous law at the end,
+/// dissipated_J what damping took and, with memory, the work done on the tissue less elastic_J
+/// (below zero where slow loading let the memory relax).
 /// @return SN_OK also where the run stopped early (summary->converged false, summary->reason).
 SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                                 sn_record *history);

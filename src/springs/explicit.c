@@ -1,0 +1,149 @@
+// The explicit run: steps, records, counts energy.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "springs/net.h"
+
+/// What the ledger keeps from one step to the next.
+typedef struct ledger {
+    double *ext;  ///< of loads and tools at the start of the step (nodes x 3)
+    double fixed; ///< kinetic energy of prescribed directions then
+} ledger;
+
+static sn_moment moment_of(const sn_state *s) {
+    return (sn_moment){.time = s->time,
+                       .precision = s->precision,
+                       .u = s->u,
+                       .v = s->v,
+                       .f = s->now.f,
+                       .store = s->store,
+                       .pressure = s->now.pressure,
+                       .a_fixed = s->a_fixed,
+                       .tool_force = s->tool_force};
+}
+
+static double fixed_kinetic(const sn_net *net, const sn_state *s) {
+    double sum = 0;
+    for (int k = 0; k < net->fixed_count; k++) {
+        const sn_net_fixed *fixed = &net->fixed[k];
+        double v =
+            sn_real_at(s->precision, s->v, 4 * (size_t)fixed->node + (size_t)fixed->direction);
+        sum += 0.5 * net->mass[fixed->node] * v * v;
+    }
+    return sum;
+}
+
+// kinetic energy at the time of u: free velocities are half a step behind
+static double kinetic(const sn_net *net, const sn_state *s) {
+    double sum = 0;
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 3; d++) {
+            size_t at = 4 * (size_t)i + (size_t)d;
+            double v = sn_real_at(s->precision, s->v, at);
+            if (!(net->fixed_bits[i] >> d & 1))
+                v += 0.5 * s->last_step * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
+            sum += 0.5 * net->mass[i] * v * v;
+        }
+    return sum;
+}
+
+// work of one step: all forces over the way of all nodes, by the trapezoidal rule
+static void count_work(sn_run *run, const sn_state *s, ledger *l) {
+    const sn_net *net = run->net;
+    const double h = s->last_step;
+    double all = 0, ext = 0, on_fixed = 0;
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 3; d++) {
+            size_t at = 4 * (size_t)i + (size_t)d;
+            double way = h * sn_real_at(s->precision, s->v, at);
+            double work = 0.5 * way *
+                          (sn_real_at(s->precision, s->f_before, at) +
+                           sn_real_at(s->precision, s->now.f, at));
+            all += work;
+            ext += way * net->mass[i] * net->gravity[d];
+            if (net->fixed_bits[i] >> d & 1) on_fixed += work;
+        }
+    for (int k = 0; k < net->loaded_count; k++)
+        for (int d = 0; d < 3; d++) {
+            int at = 3 * net->loaded[k] + d;
+            double way = h * sn_real_at(s->precision, s->v, 4 * (size_t)net->loaded[k] + (size_t)d);
+            ext += 0.5 * way * (l->ext[at] + s->ext[at]);
+            l->ext[at] = s->ext[at];
+        }
+    double fixed = fixed_kinetic(net, s);
+    run->internal_work += ext - all;
+    // supports give what prescribed nodes gain and pass on
+    run->external_work += ext + fixed - l->fixed - on_fixed;
+    l->fixed = fixed;
+}
+
+static sn_status record(sn_run *run, const sn_state *s) {
+    const sn_moment moment = moment_of(s);
+    return sn_run_record(run, &moment);
+}
+
+static double elastic(sn_run *run, const sn_state *s) {
+    const sn_moment moment = moment_of(s);
+    sn_fields_fill(run->net, run->fields, &moment);
+    return sn_fields_elastic(run->net, run->fields);
+}
+
+static void stop(sn_run *run, double time) {
+    run->summary->converged = false;
+    snprintf(run->summary->reason, sizeof run->summary->reason,
+             "the motion became infinite at %.6g s of %.6g s, after %ld steps of about %.3g s: the "
+             "loads may be too sudden, or the tissue too soft for them",
+             time, run->net->until, run->summary->steps, time / (double)run->summary->steps);
+}
+
+// steps from now to `next`
+static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
+    const double tiny = 1e-9 * run->net->until;
+    sn_run_summary *summary = run->summary;
+    while (s->time < next - tiny && !s->broken) {
+        double left = next - s->time, start = sn_clock();
+        // the last two steps before a landing share what is left
+        double step = left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
+        sn_step_info info = sn_state_step(run->net, s, step);
+        sn_run_wall(run, sn_clock() - start);
+        summary->steps++;
+        if (s->broken) return;
+        summary->step_s = summary->steps == 1 ? info.step : fmin(summary->step_s, info.step);
+        count_work(run, s, l);
+        sn_run_progress(run, s->time);
+    }
+    s->time = next; // rounding of sums
+}
+
+sn_status sn_run_explicit(sn_run *run) {
+    const sn_net *net = run->net;
+    sn_state *s = NULL;
+    ledger l = {.ext = sn_alloc((size_t)net->nodes * 3, sizeof(double))};
+    sn_status status = l.ext ? sn_state_create(net, &s) : SN_E_MEMORY;
+    if (status == SN_OK) status = record(run, s);
+    if (status == SN_OK) {
+        memcpy(l.ext, s->ext, (size_t)net->nodes * 3 * sizeof *l.ext);
+        run->elastic_start = elastic(run, s);
+    }
+    long output = 1;
+    while (status == SN_OK && !s->broken && s->time < net->until) {
+        double due = sn_run_output_time(net, output);
+        double next = fmin(fmin(due, sn_net_next_corner(net, s->time)), net->until);
+        go_on(run, s, &l, next);
+        if (s->broken || next < due) continue;
+        status = record(run, s);
+        output++;
+    }
+    if (status == SN_OK) {
+        if (s->broken) stop(run, s->time);
+        run->summary->simulated_s = s->time;
+        run->summary->kinetic_J = s->broken ? 0.0 : kinetic(net, s);
+        run->summary->elastic_J = elastic(run, s);
+        run->summary->dissipated_J = s->damped_energy;
+    }
+    sn_state_destroy(s);
+    sn_free(l.ext);
+    return status;
+}

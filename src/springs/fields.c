@@ -1,0 +1,289 @@
+// Fields, rows of the history and energies of a moment of a run.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Stresses of central springs are virials: a spring of force f and length vector x adds f x x / l
+// to the cells around it, in parts by their volumes. The pressure is -tr(Cauchy stress)/3, the mean
+// of the cells around a node by volume. energy_density is W + U of the instantaneous law at the
+// present strain, whatever the memory has relaxed.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "springs/net.h"
+
+struct sn_fields {
+    double *displacement, *velocity, *pressure; ///< nodes
+    double *strain, *stress, *energy;           ///< cells of the mesh
+    double *around;                             ///< volume around each node
+    double *growth;                             ///< J - 1 of volume points
+};
+
+sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
+    *fields = NULL;
+    sn_fields *f = sn_alloc(1, sizeof *f);
+    if (!f) return SN_E_MEMORY;
+    const size_t nodes = (size_t)net->nodes, cells = (size_t)net->cells;
+    f->displacement = sn_alloc(nodes * 3, sizeof(double));
+    f->velocity = sn_alloc(nodes * 3, sizeof(double));
+    f->pressure = sn_alloc(nodes, sizeof(double));
+    f->around = sn_alloc(nodes, sizeof(double));
+    f->strain = sn_alloc(cells * 6, sizeof(double));
+    f->stress = sn_alloc(cells * 6, sizeof(double));
+    f->energy = sn_alloc(cells, sizeof(double));
+    f->growth = sn_alloc((size_t)net->point_blocks * SN_BLOCK, sizeof(double));
+    if (!f->displacement || !f->velocity || !f->pressure || !f->around || !f->strain ||
+        !f->stress || !f->energy || !f->growth) {
+        sn_fields_destroy(f);
+        return SN_E_MEMORY;
+    }
+    *fields = f;
+    return SN_OK;
+}
+
+void sn_fields_destroy(sn_fields *f) {
+    if (!f) return;
+    void *all[] = {f->displacement, f->velocity, f->pressure, f->around,
+                   f->strain,       f->stress,   f->energy,   f->growth};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
+    sn_free(f);
+}
+
+//---- one cell ------------------------------------------------------------------------------------
+
+/// Deformation of the cell of a slot, in material axes.
+typedef struct cell_shape {
+    double F[9], J, V;
+} cell_shape;
+
+static void find_shape(const sn_net *net, const sn_moment *m, int slot, cell_shape *c) {
+    const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
+    const double *gradient = net->data[SN_DOUBLE].gradient;
+    const int *corner = net->cell_node + block * 4 * SN_BLOCK + lane;
+    c->V = ((const double *)net->data[SN_DOUBLE].volume)[slot];
+    for (size_t i = 0; i < 3; i++)
+        for (size_t j = 0; j < 3; j++) {
+            double sum = net->axes[3 * j + i];
+            double u0 = sn_real_at(m->precision, m->u, 4 * (size_t)corner[0] + i);
+            for (size_t a = 1; a < 4; a++)
+                sum += (sn_real_at(m->precision, m->u, 4 * (size_t)corner[a * SN_BLOCK] + i) - u0) *
+                       gradient[(block * 9 + 3 * (a - 1) + j) * SN_BLOCK + lane];
+            c->F[3 * i + j] = sum;
+        }
+    const double *F = c->F;
+    c->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+           F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
+
+static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
+static const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+
+static void green_strain(const double F[9], double E[6]) {
+    for (int k = 0; k < 6; k++) {
+        int i = pair[k][0], j = pair[k][1];
+        E[k] = 0.5 * (F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j] - (i == j));
+    }
+}
+
+// from material axes to space: Q^T E Q
+static void turn_back(const sn_net *net, const double E[6], double *out) {
+    const double *Q = net->axes;
+    for (int k = 0; k < 6; k++) {
+        out[k] = 0;
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                out[k] += Q[3 * i + pair[k][0]] * E[sym[i][j]] * Q[3 * j + pair[k][1]];
+    }
+}
+
+// F S F^T / J
+static void add_cauchy(const cell_shape *c, const double S[6], double *stress) {
+    for (int k = 0; k < 6; k++)
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++)
+                stress[k] +=
+                    c->F[3 * pair[k][0] + i] * S[sym[i][j]] * c->F[3 * pair[k][1] + j] / c->J;
+}
+
+// number i of component k of block b with memory, from the store
+static double remembered(const sn_net_region *region, const sn_moment *m, size_t first,
+                         size_t block, size_t n, size_t i) {
+    const size_t at = first + block * (1 + (size_t)region->branches) * n + i;
+    double sum = region->memory.g_inf * sn_real_at(m->precision, m->store, at);
+    for (size_t k = 1; k <= (size_t)region->branches; k++)
+        sum += sn_real_at(m->precision, m->store, at + k * n);
+    return sum;
+}
+
+//---- stress of the rungs -------------------------------------------------------------------------
+
+static void coupled_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
+                         int slot, const cell_shape *c, double *stress, double *energy) {
+    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6, n = components * SN_BLOCK;
+    const size_t block = (size_t)(slot / SN_BLOCK - region->cell_block);
+    const size_t lane = (size_t)slot % SN_BLOCK;
+    const sn_tissue *t = &region->tissue;
+    double E[6], S[6], p = region->bulk * (c->J - 1.0);
+    green_strain(c->F, E);
+    sn_law_solid(t->law, t->value, t->terms, 1, E, energy, S, NULL);
+    if (net->volume_mode == SN_VOLUME_CELL) *energy += 0.5 * p * (c->J - 1.0);
+    if (region->branches > 0) {
+        for (size_t k = 0; k < 6; k++)
+            S[k] = remembered(region, m, region->cell_store, block, n, k * SN_BLOCK + lane);
+        if (components == 7)
+            p = remembered(region, m, region->cell_store, block, n, 6 * SN_BLOCK + lane);
+    }
+    add_cauchy(c, S, stress);
+    for (int k = 0; k < 3 && net->volume_mode == SN_VOLUME_CELL; k++) stress[k] += p;
+}
+
+static void central_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
+                         int slot, const cell_shape *c, double *stress, double *energy) {
+    const sn_net_data *data = &net->data[SN_DOUBLE];
+    for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
+        const int s = net->spring_share[q];
+        const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
+        const double inverse = ((const double *)data->inverse)[s], B = region->exponent;
+        const double part = ((const double *)data->stiffness)[s] / net->spring_volume[s];
+        double x[3], l2 = 0, t, phi;
+        for (size_t d = 0; d < 3; d++) {
+            const int *end = net->spring_end + block * 2 * SN_BLOCK + lane;
+            x[d] = ((const double *)data->edge)[(block * 3 + d) * SN_BLOCK + lane] +
+                   sn_real_at(m->precision, m->u, 4 * (size_t)end[SN_BLOCK] + d) -
+                   sn_real_at(m->precision, m->u, 4 * (size_t)end[0] + d);
+            l2 += x[d] * x[d];
+        }
+        double lambda = sqrt(l2 * inverse), y = lambda - 1.0;
+        if (y < 0) {
+            t = (lambda - 1.0 / (lambda * lambda)) / 3.0;
+            phi = (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
+        } else {
+            bool straight = fabs(B * y) < 1e-5; // phi by two terms of its series
+            t = fabs(B * y) < 1e-12 ? y : expm1(B * y) / B;
+            phi = straight ? y * y * (0.5 + B * y / 6.0) : (t - y) / B;
+        }
+        if (region->branches > 0)
+            t = remembered(region, m, region->spring_store, block - (size_t)region->spring_block,
+                           SN_BLOCK, lane);
+        for (int k = 0; k < 6; k++)
+            stress[k] += part * t / lambda * x[pair[k][0]] * x[pair[k][1]] / c->J;
+        *energy += part * phi / inverse;
+    }
+}
+
+// mean over the corners of nodal pressure and of the energy of the volume points
+static void nodal_volume(const sn_net *net, const sn_net_region *region, const sn_fields *f,
+                         const sn_moment *m, int slot, double *stress, double *energy) {
+    const int *point = net->cell_point + (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
+    for (int a = 0; a < 4; a++) {
+        const int p = point[a * SN_BLOCK];
+        double pressure = sn_real_at(m->precision, m->pressure, (size_t)p);
+        for (int k = 0; k < 3; k++) stress[k] += 0.25 * pressure;
+        *energy += 0.125 * region->bulk * f->growth[p] * f->growth[p];
+    }
+}
+
+//---- whole ---------------------------------------------------------------------------------------
+
+static void find_growth(const sn_net *net, sn_fields *f, const sn_moment *m) {
+    const size_t points = (size_t)net->point_blocks * SN_BLOCK;
+    const double *volume = net->data[SN_DOUBLE].volume;
+    memset(f->growth, 0, points * sizeof *f->growth);
+    for (int s = 0; net->volume && s < net->cell_blocks * SN_BLOCK; s++) {
+        cell_shape c;
+        if (!(volume[s] > 0)) continue;
+        find_shape(net, m, s, &c);
+        const int *point = net->cell_point + (s / SN_BLOCK) * 4 * SN_BLOCK + s % SN_BLOCK;
+        for (int a = 0; a < 4; a++) f->growth[point[a * SN_BLOCK]] += 0.25 * c.V * (c.J - 1.0);
+    }
+    for (size_t p = 0; p < points; p++)
+        if (net->point_volume[p] > 0) f->growth[p] /= net->point_volume[p];
+}
+
+static const sn_net_region *region_of(const sn_net *net, int slot) {
+    const sn_net_region *r = net->region;
+    while (slot >= (r->cell_block + r->cell_blocks) * SN_BLOCK) r++;
+    return r;
+}
+
+static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 3; d++) {
+            size_t at = 4 * (size_t)i + (size_t)d;
+            f->displacement[3 * i + d] = sn_real_at(m->precision, m->u, at);
+            f->velocity[3 * i + d] = m->v ? sn_real_at(m->precision, m->v, at) : 0.0;
+        }
+}
+
+void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
+    fill_nodes(net, f, m);
+    find_growth(net, f, m);
+    memset(f->pressure, 0, (size_t)net->nodes * sizeof *f->pressure);
+    memset(f->around, 0, (size_t)net->nodes * sizeof *f->around);
+    for (int e = 0; e < net->cells; e++) {
+        const int slot = net->cell_slot[e];
+        const sn_net_region *region = region_of(net, slot);
+        double E[6], *stress = f->stress + 6 * e;
+        cell_shape c;
+        find_shape(net, m, slot, &c);
+        green_strain(c.F, E);
+        turn_back(net, E, f->strain + 6 * e);
+        memset(stress, 0, 6 * sizeof *stress);
+        f->energy[e] = 0;
+        if (net->rung == SN_RUNG_COUPLED)
+            coupled_cell(net, region, m, slot, &c, stress, &f->energy[e]);
+        else
+            central_cell(net, region, m, slot, &c, stress, &f->energy[e]);
+        if (net->volume) nodal_volume(net, region, f, m, slot, stress, &f->energy[e]);
+        const int *corner = net->cell_node + (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
+        for (int a = 0; a < 4; a++) {
+            f->pressure[corner[a * SN_BLOCK]] -= c.V * (stress[0] + stress[1] + stress[2]) / 3.0;
+            f->around[corner[a * SN_BLOCK]] += c.V;
+        }
+    }
+    for (int i = 0; i < net->nodes; i++) f->pressure[i] /= f->around[i];
+}
+
+sn_status sn_fields_emit(const sn_fields *f, double time, const sn_output *output) {
+    const sn_field all[] = {{"displacement", "m", SN_ON_NODES, 3, f->displacement},
+                            {"velocity", "m/s", SN_ON_NODES, 3, f->velocity},
+                            {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
+                            {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
+                            {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
+                            {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy}};
+    const sn_frame frame = {time, (int)(sizeof all / sizeof *all), all};
+    return output->frame(output->context, &frame);
+}
+
+double sn_fields_elastic(const sn_net *net, const sn_fields *f) {
+    const double *volume = net->data[SN_DOUBLE].volume;
+    double sum = 0;
+    for (int e = 0; e < net->cells; e++) sum += f->energy[e] * volume[net->cell_slot[e]];
+    return sum;
+}
+
+sn_status sn_net_history_row(const sn_net *net, const sn_moment *m, double *row,
+                             sn_record *history) {
+    double *to = row;
+    *to++ = m->time;
+    for (int p = 0; p < net->probe_count; p++, to += 3) {
+        const sn_net_probe *probe = &net->probe[p];
+        to[0] = to[1] = to[2] = 0.0;
+        if (probe->kind == SN_PROBE_POINT) {
+            for (int a = 0; a < 4; a++)
+                for (int d = 0; d < 3; d++)
+                    to[d] += probe->weight[a] *
+                             sn_real_at(m->precision, m->u, 4 * (size_t)probe->node[a] + (size_t)d);
+            continue;
+        }
+        // what the support gives: mass times acceleration less all other forces
+        for (int k = 0; k < probe->count; k++) {
+            const sn_net_fixed *fixed = &net->fixed[probe->fixed[k]];
+            size_t at = 4 * (size_t)fixed->node + (size_t)fixed->direction;
+            double a = m->a_fixed ? m->a_fixed[probe->fixed[k]] : 0.0;
+            to[fixed->direction] += net->mass[fixed->node] * a - sn_real_at(m->precision, m->f, at);
+        }
+    }
+    for (int t = 0; t < net->tool_count; t++)
+        for (int d = 0; d < 3; d++) *to++ = m->tool_force[t][d];
+    return sn_record_append(history, row);
+}

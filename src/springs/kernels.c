@@ -1,0 +1,29 @@
+// The rows of kernels: instruction sets by precisions.
+// SPDX-License-Identifier: Apache-2.0
+#include "base/isa.h"
+#include "springs/pass.h"
+
+#define DECLARE_BITS(isa, bits)                                                                    \
+    void sn_volumes_##isa##_##bits(const sn_cell_pass *pass);                                      \
+    void sn_points_##isa##_##bits(const sn_point_pass *pass);                                      \
+    void sn_cells_##isa##_##bits(const sn_cell_pass *pass);                                        \
+    void sn_springs_##isa##_##bits(const sn_spring_pass *pass);                                    \
+    void sn_nodes_##isa##_##bits(const sn_node_pass *pass);                                        \
+    void sn_move_##isa##_##bits(sn_move_pass *pass);
+#define DECLARE(isa) DECLARE_BITS(isa, 32) DECLARE_BITS(isa, 64)
+SN_ISA_LIST(DECLARE)
+
+#define ROW(isa, bits)                                                                             \
+    {                                                                                              \
+        sn_volumes_##isa##_##bits, sn_points_##isa##_##bits, sn_cells_##isa##_##bits,              \
+            sn_springs_##isa##_##bits, sn_nodes_##isa##_##bits, sn_move_##isa##_##bits             \
+    }
+static const sn_spring_kernels rows[SN_ISA_COUNT][2] = {
+#define ROWS(isa) [SN_ISA_##isa] = {[SN_SINGLE] = ROW(isa, 32), [SN_DOUBLE] = ROW(isa, 64)},
+    SN_ISA_LIST(ROWS)
+#undef ROWS
+};
+
+const sn_spring_kernels *sn_spring_kernels_row(int isa, sn_precision precision) {
+    return &rows[isa][precision];
+}

@@ -1,0 +1,347 @@
+// Builds nets.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/isa.h"
+#include "springs/net.h"
+
+static sn_status check_settings(const sn_case *c) {
+    const sn_springs_def *def = &c->springs;
+    if (def->rung == SN_RUNG_SMOOTHED)
+        return sn_fail(SN_E_UNSUPPORTED, "springs: model smoothed is not there yet; use coupled or "
+                                         "central");
+    if (def->integrator == SN_INTEGRATOR_IMPLICIT)
+        return sn_fail(SN_E_UNSUPPORTED, "springs: integrator implicit is not there yet; use "
+                                         "explicit or quasi-static");
+    if (!(def->step >= 0) || !isfinite(def->step))
+        return sn_fail(SN_E_RANGE, "springs: step is %g s, expected a positive time or auto",
+                       def->step);
+    if (!(def->damping >= 0) || !isfinite(def->damping))
+        return sn_fail(SN_E_RANGE, "springs: damping is %g 1/s, expected 0 or more", def->damping);
+    if (c->mesh->cell_count > SN_CELLS_MAX / 4)
+        return sn_fail(SN_E_RANGE, "springs: the mesh has %d cells, at most %d fit the lists",
+                       c->mesh->cell_count, SN_CELLS_MAX / 4);
+    return SN_OK;
+}
+
+static sn_status check_motion(const sn_case *c) {
+    if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC) return SN_OK;
+    char text[SN_TEXT_MAX];
+    sn_case_free_motions(c, text);
+    if (text[0] == '\0') return SN_OK;
+    return sn_fail(SN_E_DEFINITION,
+                   "springs: supports and prescribed motions leave %s free, so there is no "
+                   "equilibrium to find; add supports or use integrator explicit",
+                   text);
+}
+
+//---- tissues -------------------------------------------------------------------------------------
+
+static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *region) {
+    const sn_tissue *t = &region->tissue;
+    if (t->law->fibres)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "tissue %s: law %s has fibres, which central springs cannot carry; use "
+                       "model coupled",
+                       t->name, t->law->name);
+    SN_TRY(sn_spring_fit(t, &region->exponent, &region->stiffening));
+    // springs bring lambda = mu, a bulk modulus of 5/3 mu
+    double own = 5.0 / 3.0 * region->shear * region->stiffening;
+    double missing = region->bulk - own;
+    if (c->springs.volume && missing < -1e-9 * own)
+        return sn_fail(
+            SN_E_UNSUPPORTED,
+            "tissue %s: central springs bring a bulk modulus of %g Pa (a Poisson's ratio "
+            "of 1/4), the tissue has %g Pa; use model coupled, or volume: false",
+            t->name, own, region->bulk);
+    if (!c->springs.volume && fabs(missing) > 0.01 * own)
+        snprintf(net->note + strlen(net->note), sizeof net->note - strlen(net->note),
+                 "Central springs without volume act with Poisson's ratio 1/4 (tissue %.40s). ",
+                 t->name);
+    region->bulk = c->springs.volume ? fmax(missing, 0.0) : 0.0;
+    return SN_OK;
+}
+
+static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region) {
+    const sn_tissue *t = &region->tissue;
+    sn_moduli moduli;
+    if (t->law->kind == SN_LAW_UNIAXIAL && net->rung == SN_RUNG_COUPLED)
+        return sn_fail(
+            SN_E_UNSUPPORTED,
+            "tissue %s: law %s is uniaxial; coupled cells need a solid law, or use model "
+            "central with poissons_ratio",
+            t->name, t->law->name);
+    sn_tissue_moduli(t, &moduli);
+    region->shear = moduli.shear;
+    region->bulk = moduli.bulk;
+    region->stiffening = 1.0;
+    if (net->rung == SN_RUNG_COUPLED || net->volume) {
+        if (isinf(region->bulk))
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "tissue %s: incompressible; springs need a finite bulk_modulus, for "
+                           "example %g Pa (1000 times the shear modulus)",
+                           t->name, 1000.0 * moduli.shear);
+    }
+    if (net->rung == SN_RUNG_CENTRAL) SN_TRY(check_central(c, net, region));
+    for (int k = 0; k < SN_VALUES_MAX; k++) region->value_f[k] = (float)t->value[k];
+    region->density = t->density;
+    if (!isfinite(region->density)) region->density = 0.0; // sn_case_check() saw to it where needed
+    return SN_OK;
+}
+
+static sn_status set_memory(const sn_case *c, sn_net_region *region, double t_min) {
+    t_min = fmin(fmax(t_min, c->until * 1e-6), c->until * 0.1);
+    SN_TRY(sn_memory_compress(&region->tissue.memory, t_min, c->until, c->springs.memory_tolerance,
+                              &region->memory));
+    region->branches = region->memory.terms + (region->memory.viscous > 0);
+    return SN_OK;
+}
+
+//---- arrays --------------------------------------------------------------------------------------
+
+static sn_status set_masses(const sn_case *c, sn_net *net) {
+    sn_net_data *data = &net->data[SN_DOUBLE];
+    const size_t nodes = (size_t)net->nodes;
+    const double *volume = data->volume;
+    net->mass = sn_alloc(nodes, sizeof *net->mass);
+    double *weight = data->weight = sn_alloc(nodes * 4, sizeof *weight);
+    data->inverse_mass = sn_alloc(nodes * 4, sizeof(double));
+    if (!net->mass || !weight || !data->inverse_mass) return SN_E_MEMORY;
+    for (int e = 0; e < net->cells; e++)
+        for (int a = 0; a < 4; a++)
+            net->mass[c->mesh->cell[4 * e + a]] +=
+                0.25 * net->region[c->mesh->region[e]].density * volume[net->cell_slot[e]];
+    for (size_t i = 0; i < nodes; i++)
+        for (size_t d = 0; d < 3; d++) weight[4 * i + d] = net->mass[i] * net->gravity[d];
+    return SN_OK;
+}
+
+static double mean_edge(const sn_net *net) {
+    double volume = 0.0;
+    const double *v = net->data[SN_DOUBLE].volume;
+    for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) volume += v[s];
+    return cbrt(6.0 * volume / net->cells); // of a cell of a cube
+}
+
+static void set_inverse_masses(sn_net *net) {
+    double *inverse = net->data[SN_DOUBLE].inverse_mass;
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 3; d++)
+            inverse[4 * i + d] =
+                (net->fixed_bits[i] >> d & 1) || !(net->mass[i] > 0) ? 0.0 : 1.0 / net->mass[i];
+}
+
+static void place_stores(sn_net *net) {
+    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
+    size_t at = 0;
+    for (int r = 0; r < net->region_count; r++) {
+        sn_net_region *g = &net->region[r];
+        const size_t numbers = g->branches > 0 ? (size_t)(1 + g->branches) * SN_BLOCK
+                                               : 0; // of one component, one block
+        g->cell_store = at;
+        if (net->rung == SN_RUNG_COUPLED) at += numbers * components * (size_t)g->cell_blocks;
+        g->spring_store = at;
+        at += numbers * (size_t)g->spring_blocks;
+        g->point_store = at;
+        at += numbers * (size_t)g->point_blocks;
+    }
+    net->store_size = at;
+}
+
+// float copy of an array of count doubles
+static sn_status to_single(const void *from, size_t count, void **to) {
+    if (!from) return SN_OK;
+    float *out = *to = sn_alloc(count, sizeof *out);
+    if (!out) return SN_E_MEMORY;
+    for (size_t i = 0; i < count; i++) out[i] = (float)((const double *)from)[i];
+    return SN_OK;
+}
+
+static sn_status copy_single(sn_net *net) {
+    if (net->precision == SN_DOUBLE) return SN_OK;
+    const sn_net_data *d = &net->data[SN_DOUBLE];
+    sn_net_data *s = &net->data[SN_SINGLE];
+    const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
+    const size_t springs = (size_t)net->spring_blocks * SN_BLOCK, nodes = (size_t)net->nodes * 4;
+    SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
+    SN_TRY(to_single(d->volume, cells, &s->volume));
+    SN_TRY(to_single(d->edge, springs * 3, &s->edge));
+    SN_TRY(to_single(d->inverse, springs, &s->inverse));
+    SN_TRY(to_single(d->stiffness, springs, &s->stiffness));
+    SN_TRY(
+        to_single(d->point_stiffness, (size_t)net->point_blocks * SN_BLOCK, &s->point_stiffness));
+    SN_TRY(to_single(d->weight, nodes, &s->weight));
+    return to_single(d->inverse_mass, nodes, &s->inverse_mass);
+}
+
+// appends the springs of a region that start at corner a of a cell and end at another corner
+static int add_shares(sn_net *net, const sn_net_region *g, const int *corner, int a, int count) {
+    const int first = g->spring_block * SN_BLOCK,
+              *list = net->node_start + 3 * corner[a * SN_BLOCK];
+    for (int k = list[0]; k < list[1]; k++) {
+        const int spring = net->node_item[k];
+        if (spring < first || spring >= first + g->spring_count) continue;
+        int end = net->spring_end[(spring / SN_BLOCK * 2 + 1) * SN_BLOCK + spring % SN_BLOCK];
+        for (int b = 0; b < 4; b++)
+            if (corner[b * SN_BLOCK] == end) net->spring_share[count++] = spring;
+    }
+    return count;
+}
+
+// springs around each cell, for stresses on the central rung
+static sn_status list_shares(sn_net *net) {
+    if (net->rung != SN_RUNG_CENTRAL) return SN_OK;
+    const size_t slots = (size_t)net->cell_blocks * SN_BLOCK;
+    net->spring_share_start = sn_alloc(slots + 1, sizeof(int));
+    net->spring_share = sn_alloc((size_t)net->cells * 6, sizeof(int));
+    if (!net->spring_share_start || !net->spring_share) return SN_E_MEMORY;
+    const double *volume = net->data[SN_DOUBLE].volume;
+    int count = 0;
+    for (int r = 0; r < net->region_count; r++) {
+        const sn_net_region *g = &net->region[r];
+        for (int s = g->cell_block * SN_BLOCK; s < (g->cell_block + g->cell_blocks) * SN_BLOCK;
+             s++) {
+            net->spring_share_start[s] = count;
+            if (!(volume[s] > 0)) continue; // filling
+            const int *corner = net->cell_node + (s / SN_BLOCK) * 4 * SN_BLOCK + s % SN_BLOCK;
+            for (int a = 0; a < 4; a++) count = add_shares(net, g, corner, a, count);
+        }
+    }
+    net->spring_share_start[slots] = count;
+    return SN_OK;
+}
+
+//---- whole ---------------------------------------------------------------------------------------
+
+static sn_status copy_case(const sn_case *c, sn_net *net) {
+    const sn_springs_def *def = &c->springs;
+    net->nodes = c->mesh->node_count;
+    net->cells = c->mesh->cell_count;
+    net->rung = def->rung;
+    net->volume = def->volume;
+    net->volume_mode = def->volume                    ? SN_VOLUME_NODE
+                       : def->rung == SN_RUNG_COUPLED ? SN_VOLUME_CELL
+                                                      : SN_VOLUME_NONE;
+    net->integrator = def->integrator;
+    net->precision = def->integrator == SN_INTEGRATOR_EXPLICIT ? def->precision : SN_DOUBLE;
+    net->isa = sn_isa_current();
+    net->damping = def->damping;
+    net->until = c->until;
+    net->output_every = c->output_every;
+    net->asked_step = def->step;
+    memcpy(net->gravity, c->gravity, sizeof net->gravity);
+    if (def->threads > 1)
+        snprintf(net->note, sizeof net->note, "%d threads were asked for; this version runs on 1. ",
+                 def->threads);
+    net->node_position = sn_alloc((size_t)net->nodes * 3, sizeof(double));
+    net->region_count = c->mesh->region_count;
+    net->region = sn_alloc((size_t)net->region_count, sizeof *net->region);
+    if (!net->node_position || !net->region) return SN_E_MEMORY;
+    memcpy(net->node_position, c->mesh->node, (size_t)net->nodes * 3 * sizeof(double));
+    bool fibres = false;
+    for (int r = 0; r < net->region_count; r++) {
+        net->region[r].tissue = c->tissue[r];
+        SN_TRY(set_tissue(c, net, &net->region[r]));
+        fibres = fibres || c->tissue[r].law->fibres;
+    }
+    for (int k = 0; k < 9; k++) net->axes[k] = k % 4 == 0;
+    if (fibres) sn_case_axes(c, net->axes);
+    for (int k = 0; k < 9; k++) net->rotated = net->rotated || net->axes[k] != (k % 4 == 0);
+    return SN_OK;
+}
+
+static sn_status build(const sn_case *c, sn_net *net) {
+    SN_TRY(check_settings(c));
+    SN_TRY(sn_case_check(c));
+    SN_TRY(check_motion(c));
+    SN_TRY(copy_case(c, net));
+    SN_TRY(sn_net_build_cells(c, net));
+    if (net->rung == SN_RUNG_CENTRAL) SN_TRY(sn_net_build_springs(c, net));
+    SN_TRY(sn_net_build_nodes(net));
+    SN_TRY(list_shares(net));
+    SN_TRY(set_masses(c, net));
+    SN_TRY(sn_net_build_drive(c, net));
+    set_inverse_masses(net);
+    net->edge = mean_edge(net);
+    // the step must be known before the memory, the viscous part before the step
+    for (int r = 0; r < net->region_count; r++)
+        SN_TRY(set_memory(c, &net->region[r], c->output_every));
+    double t_min = 1e-3 * net->output_every;
+    if (net->integrator == SN_INTEGRATOR_EXPLICIT) {
+        SN_TRY(sn_net_find_step(net));
+        t_min = net->step;
+    } else {
+        double corner = sn_net_next_corner(net, 0.0);
+        if (isfinite(corner)) t_min = fmin(t_min, 1e-3 * corner);
+        if (net->asked_step > 0) t_min = fmin(t_min, net->asked_step);
+    }
+    for (int r = 0; r < net->region_count; r++) SN_TRY(set_memory(c, &net->region[r], t_min));
+    place_stores(net);
+    return copy_single(net);
+}
+
+sn_status sn_net_create(const sn_case *c, sn_net **net) {
+    *net = NULL;
+    sn_net *n = sn_alloc(1, sizeof *n);
+    if (!n) return SN_E_MEMORY;
+    sn_status status = build(c, n);
+    if (status != SN_OK) {
+        sn_net_destroy(n);
+        return status;
+    }
+    *net = n;
+    return SN_OK;
+}
+
+static void destroy_data(sn_net_data *d) {
+    void *all[] = {d->gradient,  d->volume,          d->edge,   d->inverse,
+                   d->stiffness, d->point_stiffness, d->weight, d->inverse_mass};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
+}
+
+static void destroy_drive(sn_net *n) {
+    for (int k = 0; k < n->factor_count; k++) sn_history_destroy(n->factor[k]);
+    for (int k = 0; k < n->load_count; k++) {
+        sn_history_destroy(n->load[k].factor);
+        sn_free(n->load[k].node);
+        sn_free(n->load[k].force);
+    }
+    for (int k = 0; k < n->tool_count; k++) sn_history_destroy(n->tool[k].path);
+    for (int k = 0; k < n->probe_count; k++) sn_free(n->probe[k].fixed);
+    void *all[] = {n->factor,       n->load,   n->tool,
+                   n->probe,        n->fixed,  n->fixed_bits,
+                   n->contact_node, n->loaded, n->contact_stiffness};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
+}
+
+void sn_net_destroy(sn_net *n) {
+    if (!n) return;
+    destroy_data(&n->data[SN_SINGLE]);
+    destroy_data(&n->data[SN_DOUBLE]);
+    destroy_drive(n);
+    void *all[] = {n->region,      n->cell_node,          n->cell_point,    n->cell_slot,
+                   n->spring_end,  n->spring_share_start, n->spring_share,  n->spring_volume,
+                   n->point_start, n->point_item,         n->point_node,    n->point_volume,
+                   n->node_start,  n->node_item,          n->node_position, n->mass,
+                   n->mode};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
+    sn_free(n);
+}
+
+int sn_net_node_count(const sn_net *net) {
+    return net->nodes;
+}
+int sn_net_spring_count(const sn_net *net) {
+    return net->springs;
+}
+int sn_net_cell_count(const sn_net *net) {
+    return net->cells;
+}
+const sn_exponentials *sn_net_memory(const sn_net *net) {
+    return &net->region[0].memory;
+}
+double sn_net_step(const sn_net *net) {
+    return net->step;
+}

@@ -1,0 +1,334 @@
+// The inside of a net and of a state.
+// SPDX-License-Identifier: Apache-2.0
+//
+// A net holds what kernels read in double precision always, and in single precision too where the
+// explicit integrator runs in it: equilibrium, the search for the highest frequency, fields and
+// energies are double whatever the step is.
+#pragma once
+
+#include <stdint.h>
+
+#include "sinew/springs.h"
+#include "springs/pass.h"
+
+/// Part of a net: the cells, springs and volume points of one region of the mesh.
+typedef struct sn_net_region {
+    sn_tissue tissue;
+    float value_f[SN_VALUES_MAX];
+    double density;
+    double shear;      ///< instantaneous, small strain
+    double bulk;       ///< of the volume term of this net (central: what springs do not bring)
+    double exponent;   ///< B of the springs
+    double stiffening; ///< factor on the springs' stiffness from the fit of their law
+    sn_exponentials memory;
+    int branches; ///< exponentials and the viscous part
+    int cell_block, cell_blocks;
+    int spring_block, spring_blocks, spring_count;
+    int point_block, point_blocks;
+    size_t cell_store, spring_store, point_store; ///< first number in the state's store
+} sn_net_region;
+
+/// What kernels read, in one precision.
+typedef struct sn_net_data {
+    void *gradient, *volume;          ///< cells
+    void *edge, *inverse, *stiffness; ///< springs
+    void *point_stiffness;            ///< volume points
+    void *weight, *inverse_mass;      ///< nodes, quads
+} sn_net_data;
+
+/// A prescribed direction of a node.
+typedef struct sn_net_fixed {
+    int node, direction;
+    int load; ///< -1: a support
+    double value;
+} sn_net_fixed;
+
+/// Traction lumped at nodes, or faces under pressure.
+typedef struct sn_net_load {
+    sn_load_kind kind;
+    sn_history *factor; ///< Nullable, owned
+    double pressure;
+    int count;     ///< nodes of a traction, faces of a pressure
+    int *node;     ///<                                       (count, or count x 3)
+    double *force; ///< traction: N at factor 1               (count x 3)
+} sn_net_load;
+
+typedef struct sn_net_probe {
+    sn_probe_kind kind;
+    int node[4]; ///< point
+    double weight[4];
+    int count; ///< reaction: entries of `fixed` that belong to its surface
+    int *fixed;
+} sn_net_probe;
+
+struct sn_net {
+    int nodes, cells, springs;
+    sn_rung rung;
+    bool volume;
+    sn_volume_mode volume_mode;
+    sn_integrator integrator;
+    sn_precision precision; ///< of the explicit step
+    int isa;
+    double damping;
+    double until, output_every;
+    double asked_step; ///< of the case; 0: chosen
+    double step;       ///< explicit
+    double omega2;     ///< highest eigenvalue of M^-1 K at rest, 1/s2, with contact
+    double contact_omega2;
+    double *mode; ///< of omega2, in mass-scaled displacements      (nodes x 3)
+    double edge;  ///< mean length of a cell's edges, m
+    char note[SN_TEXT_MAX];
+
+    int region_count;
+    sn_net_region *region;
+    int cell_blocks, spring_blocks, point_blocks;
+    int *cell_node;          ///<                                     (cell_blocks x 4 x SN_BLOCK)
+    int *cell_point;         ///<                                     (cell_blocks x 4 x SN_BLOCK)
+    int *cell_slot;          ///< place of each cell of the mesh      (cells)
+    int *spring_end;         ///<                                     (spring_blocks x 2 x SN_BLOCK)
+    int *spring_share_start; ///< springs of each slot of a cell (cell_blocks x SN_BLOCK + 1)
+    int *spring_share;       ///< slot of the spring
+    double *spring_volume;   ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
+    int *point_start, *point_item;
+    int *point_node;      ///< node of each volume point; -1 for filling (point_blocks x SN_BLOCK)
+    double *point_volume; ///<                                (point_blocks x SN_BLOCK)
+    int *node_start, *node_item;
+    double *node_position; ///<                               (nodes x 3)
+    double *mass;          ///<                               (nodes)
+    double gravity[3];
+    double axes[9];
+    bool rotated;
+    size_t store_size;   ///< numbers in the store of a state
+    sn_net_data data[2]; ///< by sn_precision
+
+    int fixed_count;
+    sn_net_fixed *fixed;
+    unsigned char *fixed_bits; ///<                           (nodes)
+    int load_count;
+    sn_net_load *load;
+    int factor_count;    ///< of displacement loads
+    sn_history **factor; ///< owned, Nullable entries
+    int tool_count;
+    sn_tool *tool; ///< paths owned
+    int contact_count;
+    int *contact_node;
+    double *contact_stiffness; ///< N/m
+    int loaded_count;
+    int *loaded; ///< nodes that loads and tools can push
+    int probe_count;
+    sn_net_probe *probe;
+};
+
+/// Factors of the recursion of one region for one step.
+typedef struct sn_factors {
+    double alpha;
+    double decay[SN_BRANCHES_MAX], gain[SN_BRANCHES_MAX];
+} sn_factors;
+
+/// Arrays that one evaluation of the forces fills.
+typedef struct sn_scratch {
+    void *f;            ///< quads                            (nodes)
+    void *cell_force;   ///< quads                            (cell_blocks x 4 x SN_BLOCK)
+    void *spring_force; ///< quads                            (spring_blocks x SN_BLOCK)
+    void *growth;       ///<                                  (cell_blocks x SN_BLOCK)
+    void *pressure;     ///<                                  (point_blocks x SN_BLOCK)
+} sn_scratch;
+
+struct sn_state {
+    double time;
+    sn_precision precision;
+    void *u, *v;    ///< quads
+    void *f_before; ///< quads: total force at the start of the last step
+    void *store;
+    sn_scratch now;
+    double factors_step;      ///< of `factors`; 0: none yet
+    sn_factors *factors;      ///< (region_count)
+    double last_step;         ///< length of the last step
+    double *a_fixed;          ///< acceleration of prescribed directions (fixed_count)
+    double *ext;              ///< force of loads and tools             (nodes x 3)
+    sn_contact *contact;      ///< (tool_count x contact_count)
+    double (*tool_centre)[3]; ///< where sn_state_set_tool() put it
+    bool *tool_set;
+    double (*tool_force)[3];
+    // the search for the highest frequency, always double
+    double *probe_u, *probe_trial; ///< quads
+    double *mode, *basis;
+    sn_scratch probe;
+    double omega2, seen_omega2; ///< until the next look, at the last look
+    long steps;
+    int check_in, check_every; ///< steps until omega2 is looked at again
+    double moved, check_way;   ///< most that a node can have moved since, may move, m
+    int warnings;
+    bool broken; ///< a step gave numbers that are not finite; the state was put back to rest
+    double damped_energy; ///< taken by damping so far, J
+};
+
+//---- building ------------------------------------------------------------------------------------
+
+/// Cells into blocks, volume points, node lists (springs too where the rung has them).
+sn_status sn_net_build_cells(const sn_case *c, sn_net *net);
+/// Edges into springs: `stiffness` class constants or the volume rule.
+sn_status sn_net_build_springs(const sn_case *c, sn_net *net);
+/// Lists of items around each node. After cells and springs.
+sn_status sn_net_build_nodes(sn_net *net);
+/// Supports, loads, tools, probes.
+sn_status sn_net_build_drive(const sn_case *c, sn_net *net);
+/// Stiffness per unit shear modulus of an edge that is wholly present, by class of the built-in
+/// blocks. @return false where the block has no such constants.
+bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face[3], double *body);
+/// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
+sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
+
+//---- forces --------------------------------------------------------------------------------------
+
+typedef struct sn_force_call {
+    sn_precision precision;
+    sn_memory_mode mode;
+    const void *u;
+    const sn_factors *factors; ///< Nullable with SN_MEMORY_OFF
+    void *store;               ///< ADVANCE
+    const void *history;       ///< TRIAL
+    sn_scratch *out;
+} sn_force_call;
+/// Internal forces and weight at all nodes, in out->f.
+void sn_net_forces(const sn_net *net, const sn_force_call *call);
+sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratch *scratch);
+void sn_scratch_destroy(sn_scratch *scratch);
+/// Recomputes factors for a step of h seconds.
+void sn_net_factors(const sn_net *net, double h, sn_factors *factors);
+/// history <- what the store contributes to the stress at the end of the step of `factors`, double.
+void sn_net_history(const sn_net *net, const sn_factors *factors, const double *store,
+                    double *history);
+
+/// Displacement of prescribed direction k at time t.
+double sn_net_prescribed(const sn_net *net, const sn_net_fixed *fixed, double t);
+/// The next corner of any load, tool path or prescribed motion after t.
+double sn_net_next_corner(const sn_net *net, double t);
+/// Whether anything imposed changes between two times with no corner between them.
+bool sn_net_changes(const sn_net *net, double from, double to);
+/// Adds loads to ext (nodes x 3; quads u in the given precision).
+void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext);
+/// Clears ext at the loaded nodes.
+void sn_net_clear_ext(const sn_net *net, double *ext);
+/// Contact with tools: forces into ext, sum by tool into tool_force; `after` may be `before`.
+/// tangent(context, node, 3x3) is called for touching nodes where not NULL.
+typedef void sn_tangent_sink(void *context, int node, const double tangent[9]);
+typedef struct sn_contact_call {
+    sn_precision precision;
+    const void *u;
+    double (*centre)[3]; ///< of the tools, read only
+    const sn_contact *before;
+    sn_contact *after;
+    double *ext;
+    double (*tool_force)[3];
+    sn_tangent_sink *tangent;
+    void *context;
+} sn_contact_call;
+void sn_net_contact(const sn_net *net, const sn_contact_call *call);
+/// Where a tool is at time t.
+void sn_net_tool_centre(const sn_net *net, const sn_state *state, int tool, double t,
+                        double centre[3]);
+
+//---- explicit integration -----------------------------------------------------------------------
+
+/// Highest eigenvalue of M^-1 K (instantaneous stiffness, prescribed directions held) at
+/// displacement u, by Lanczos' method from the vector in `mode`, which gets the approximate
+/// eigenvector.
+typedef struct sn_frequency_call {
+    const double *u; ///< quads
+    double *trial;   ///< quads, scratch
+    double *mode;    ///< mass-scaled displacements           (nodes x 3)
+    double *basis;   ///< scratch                             (SN_LANCZOS_MAX + 1 vectors)
+    int steps;       ///< at most SN_LANCZOS_MAX
+    sn_scratch *scratch;
+} sn_frequency_call;
+double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
+#define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
+#define SN_LANCZOS_WARM 3 ///< steps while running
+/// The explicit step and the mode of the highest frequency of a net at rest.
+sn_status sn_net_find_step(sn_net *net);
+/// Longest stable step for a highest eigenvalue, without safety.
+double sn_net_stable_step(const sn_net *net, double omega2);
+/// Part of the stability limit that a step takes.
+#define SN_STEP_SAFETY 0.9
+
+//---- what a run hands out ------------------------------------------------------------------------
+
+double sn_real_at(sn_precision precision, const void *array, size_t i);
+
+/// A moment of a run, in double: what fields, history and energies are computed from.
+typedef struct sn_moment {
+    double time;
+    sn_precision precision;
+    const void *u, *v; ///< quads; v Nullable
+    const void *f;     ///< total force, quads
+    const void *store;
+    const void *pressure;    ///< at volume points
+    const double *a_fixed;   ///< Nullable: at rest
+    double (*tool_force)[3]; ///< read only
+} sn_moment;
+typedef struct sn_fields sn_fields;
+sn_status sn_fields_create(const sn_net *net, sn_fields **fields);
+void sn_fields_destroy(sn_fields *fields); // NULL is allowed
+/// Fills all fields of a moment; energy_density included.
+void sn_fields_fill(const sn_net *net, sn_fields *fields, const sn_moment *moment);
+/// Hands out what was filled last.
+sn_status sn_fields_emit(const sn_fields *fields, double time, const sn_output *output);
+/// Energy of the instantaneous law, W + U, of the whole body, from what was filled last, J.
+double sn_fields_elastic(const sn_net *net, const sn_fields *fields);
+/// Appends one row: time, probes, tools. `row` has room for the columns.
+sn_status sn_net_history_row(const sn_net *net, const sn_moment *moment, double *row,
+                             sn_record *history);
+
+//---- equilibrium ---------------------------------------------------------------------------------
+
+typedef struct sn_tangent sn_tangent;
+sn_status sn_tangent_create(const sn_net *net, sn_tangent **tangent);
+void sn_tangent_destroy(sn_tangent *tangent); // NULL is allowed
+/// Where the tangent is wanted.
+typedef struct sn_tangent_call {
+    const double *u;           ///< quads
+    const sn_factors *factors; ///< Nullable: the instantaneous law
+    const double *history;     ///< with factors
+    const double *pressure;    ///< at volume points, as the force call left it
+} sn_tangent_call;
+/// Assembles -d(internal force)/du.
+void sn_tangent_assemble(const sn_net *net, sn_tangent *tangent, const sn_tangent_call *call);
+/// Adds a 3 x 3 block at a node (contact).
+void sn_tangent_add(sn_tangent *tangent, int node, const double block[9]);
+/// Inverts the diagonal blocks, with prescribed directions held: after all has been added.
+void sn_tangent_prepare(const sn_net *net, sn_tangent *tangent);
+/// y <- K x, all directions. x, y: (nodes x 3).
+void sn_tangent_multiply(const sn_net *net, sn_tangent *tangent, const double *x, double *y);
+/// Solves K x = b in the free directions (b is 0 elsewhere) by conjugate gradients from the x
+/// given, until the residual is at most `target` in norm. x is 0 in prescribed directions.
+/// @return iterations; negative where a direction of negative curvature ended it.
+int sn_tangent_solve(const sn_net *net, sn_tangent *tangent, const double *b, double target,
+                     double *x);
+
+//---- runs ----------------------------------------------------------------------------------------
+
+#define SN_WALLS 65536 ///< wall times kept of a run
+typedef struct sn_run {
+    const sn_net *net;
+    const sn_output *output; ///< Nullable
+    sn_run_summary *summary;
+    sn_record *history;
+    sn_fields *fields;
+    double *row;
+    double started, told; ///< on the clock
+    double *wall;         ///< of steps; a sample where there are more than SN_WALLS
+    long wall_seen;
+    double internal_work; ///< done on the tissue by its nodes so far, J
+    double external_work; ///< J
+    double elastic_start, kinetic_start;
+} sn_run;
+void sn_run_wall(sn_run *run, double seconds);
+/// @return SN_OK; tells progress at most a few times a second.
+void sn_run_progress(sn_run *run, double time);
+/// Row and frame of a moment.
+sn_status sn_run_record(sn_run *run, const sn_moment *moment);
+/// Time of output k, or the end of the run; INFINITY after the end.
+double sn_run_output_time(const sn_net *net, long k);
+sn_status sn_run_explicit(sn_run *run);
+sn_status sn_run_quasi_static(sn_run *run);
