@@ -6,7 +6,7 @@
 
 #define LENGTH 0.012
 #define SIDE 0.003
-#define RAMP 0.1
+#define RAMP 1.0
 #define STRETCH 1.2376
 
 static sn_history *ramp(void) {
@@ -60,12 +60,12 @@ static sn_case *strip(double bulk_ratio, bool clamped) {
     c->probe = sn_alloc(1, sizeof *c->probe);
     c->probe[0] = (sn_probe){
         .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
-    c->until = 0.3;
-    c->output_every = 0.02;
+    c->until = 1.5;
+    c->output_every = 0.1;
     c->springs.rung = SN_RUNG_COUPLED;
     c->springs.precision = SN_DOUBLE;
     c->continuum.element = SN_ELEMENT_P1;
-    c->continuum.steps = 60;
+    c->continuum.steps = 150; // 100 in the ramp: the recursion is second order in the step
     CHECK_OK(sn_case_check(c));
     return c;
 }
@@ -134,7 +134,9 @@ static void coupled_springs_are_linear_elements(void **state) {
 }
 
 // Sides free: the stretch is homogeneous, and both engines must follow the virtual test of the same
-// tissue within 1 % of its peak; springs explicit, with inertia, at the fastest measured speed.
+// tissue within 1 % of its peak; springs explicit, with inertia, and quasi-static. (At the fastest
+// measured speed, a ramp of 0.1 s, the sudden stop sends a wave through the strip: 3 % of the peak,
+// which the machine of one point cannot know.)
 static void both_engines_follow_the_virtual_test(void **state) {
     (void)state;
     sn_case *c = strip(1000, false);
@@ -143,6 +145,9 @@ static void both_engines_follow_the_virtual_test(void **state) {
     sn_record *machine = virtual_test(&c->tissue[0], springs);
     CHECK_ABS(distance(elements, machine), 0, 0.01);
     CHECK_ABS(distance(springs, machine), 0, 0.01);
+    c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
+    sn_record *still = reaction(sn_springs_run, c);
+    CHECK_ABS(distance(still, machine), 0, 0.01);
     c->continuum.element = SN_ELEMENT_P2P1;
     sn_record *mixed = reaction(sn_continuum_run, c);
     CHECK_ABS(distance(mixed, machine), 0, 0.01);
@@ -153,6 +158,7 @@ static void both_engines_follow_the_virtual_test(void **state) {
     sn_record_destroy(springs);
     sn_record_destroy(elements);
     sn_record_destroy(machine);
+    sn_record_destroy(still);
     sn_record_destroy(mixed);
     sn_record_destroy(elastic);
     sn_case_destroy(c);
