@@ -15,8 +15,7 @@ static bool finite3(const double v[3]) {
 //---- tissues -------------------------------------------------------------------------------------
 
 static bool needs_density(const sn_case *c) {
-    return norm3(c->gravity) > 0 || c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC ||
-           c->continuum.analysis == SN_ANALYSIS_DYNAMIC;
+    return norm3(c->gravity) > 0 || c->continuum.analysis == SN_ANALYSIS_DYNAMIC;
 }
 
 static sn_status check_tissue(const sn_case *c, const sn_tissue *tissue) {
@@ -38,9 +37,8 @@ static sn_status check_tissue(const sn_case *c, const sn_tissue *tissue) {
             "law \"%s\" has fibres: give their direction under \"fibres\", such as [1, 0, 0]",
             law->name);
     if (needs_density(c) && isnan(tissue->density))
-        return sn_fail(SN_E_DEFINITION,
-                       "no density: gravity and all but quasi-static runs need one; "
-                       "give it in the tissue, such as \"density: 1060 kg/m3\"");
+        return sn_fail(SN_E_DEFINITION, "no density: gravity and dynamic runs need one; "
+                                        "give it in the tissue, such as \"density: 1060 kg/m3\"");
     return SN_OK;
 }
 

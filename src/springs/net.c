@@ -10,10 +10,10 @@
 static sn_status check_settings(const sn_case *c) {
     const sn_springs_def *def = &c->springs;
     if (def->rung == SN_RUNG_SMOOTHED)
-        return sn_fail(SN_E_UNSUPPORTED, "springs: model smoothed is not there yet; use coupled or "
+        return sn_fail(SN_E_UNSUPPORTED, "springs: model smoothed is not supported; use coupled or "
                                          "central");
     if (def->integrator == SN_INTEGRATOR_IMPLICIT)
-        return sn_fail(SN_E_UNSUPPORTED, "springs: integrator implicit is not there yet; use "
+        return sn_fail(SN_E_UNSUPPORTED, "springs: integrator implicit is not supported; use "
                                          "explicit or quasi-static");
     if (!(def->step >= 0) || !isfinite(def->step))
         return sn_fail(SN_E_RANGE, "springs: step is %g s, expected a positive time or auto",
@@ -30,7 +30,13 @@ static sn_status check_motion(const sn_case *c) {
     if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC) return SN_OK;
     char text[SN_TEXT_MAX];
     sn_case_free_motions(c, text);
-    if (text[0] == '\0') return SN_OK;
+    int carrier = sn_case_carried_by(c);
+    if (text[0] == '\0' && carrier < 0) return SN_OK;
+    if (text[0] == '\0')
+        return sn_fail(SN_E_DEFINITION,
+                       "springs: no supports: the body would only be carried along by the rigid "
+                       "motion of \"%s\"; hold another surface under \"supports\"",
+                       c->mesh->surface[carrier].name);
     return sn_fail(SN_E_DEFINITION,
                    "springs: supports and prescribed motions leave %s free, so there is no "
                    "equilibrium to find; add supports or use integrator explicit",
@@ -86,8 +92,13 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
     }
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(check_central(c, net, region));
     for (int k = 0; k < SN_VALUES_MAX; k++) region->value_f[k] = (float)t->value[k];
-    region->density = t->density;
-    if (!isfinite(region->density)) region->density = 0.0; // sn_case_check() saw to it where needed
+    if (net->integrator == SN_INTEGRATOR_EXPLICIT && !isfinite(t->density))
+        return sn_fail(
+            SN_E_DEFINITION,
+            "tissue %s: no density: explicit springs have inertia; give it in the tissue, "
+            "such as density: 1060 kg/m3, or use integrator quasi-static",
+            t->name);
+    region->density = isfinite(t->density) ? t->density : 0.0;
     return SN_OK;
 }
 

@@ -258,7 +258,16 @@ static void refusals_name_the_reason(void **state) {
     CHECK_FAILS(sn_net_create(c, &net), SN_E_UNSUPPORTED, "implicit");
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     CHECK_FAILS(sn_net_create(c, &net), SN_E_DEFINITION, "equilibrium");
+    c->load = sn_alloc(1, sizeof *c->load);
+    c->load_count = 1;
+    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
+                           .surface = sn_mesh_surface(c->mesh, "top"),
+                           .vector = {0, 0, 1e-3}};
+    CHECK_FAILS(sn_net_create(c, &net), SN_E_DEFINITION, "rigid motion of \"top\"");
     c->springs.integrator = SN_INTEGRATOR_EXPLICIT;
+    c->tissue[0].density = NAN;
+    CHECK_FAILS(sn_net_create(c, &net), SN_E_DEFINITION, "no density");
+    c->tissue[0].density = 1000;
     c->springs.step = -1;
     CHECK_FAILS(sn_net_create(c, &net), SN_E_RANGE, "step");
     c->springs.step = 0;
