@@ -39,6 +39,11 @@ static sn_status petsc_failed(PetscErrorCode code, const char *what) {
         }                                                                                          \
     } while (0)
 
+// OpenBLAS starts a thread a core, which on the small fronts of a factorisation mostly wait for
+// each other (a third of the processor time of an indentation went into that) and fight with other
+// ranks. Weak: another BLAS has no such function.
+void openblas_set_num_threads(int threads) __attribute__((weak));
+
 static void finish_petsc(void) {
     LEAKS_OF_OTHERS(PetscFinalize());
 }
@@ -50,6 +55,7 @@ static sn_status start_petsc(void) {
     TRY_PETSC(PetscFinalized(&ended), "start");
     if (ended) return sn_fail(SN_E_SOLVER, "PETSc was shut down in this process");
     if (started) return SN_OK;
+    if (openblas_set_num_threads && !getenv("OPENBLAS_NUM_THREADS")) openblas_set_num_threads(1);
     TRY_PETSC(PetscOptionsSetValue(NULL, "-no_signal_handler", "true"), "start");
     PetscErrorCode code;
     LEAKS_OF_OTHERS(code = PetscInitializeNoArguments());
