@@ -7,14 +7,20 @@
 #include "cli/cli.h"
 
 typedef struct analysis {
-    const char *test;
+    const char *path, *test;
+    int rows;
+    bool headed; ///< the heading has been printed
     json_t *json;
     sn_report *report; ///< NULL without --out
     bool quiet;        ///< nothing on standard output but JSON
 } analysis;
 
-static void say(const analysis *a, const char *what, const char *value, const char *remark) {
-    if (!a->quiet) printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
+static void say(analysis *a, const char *what, const char *value, const char *remark) {
+    if (a->quiet) return;
+    // nothing is printed before the reduction has succeeded
+    if (!a->headed) printf("%s: %s test, %d rows\n", a->path, a->test, a->rows);
+    a->headed = true;
+    printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
 }
 
 static void stress_plot(sn_report *report, const char *title, int lines, const sn_line *line) {
@@ -179,13 +185,12 @@ static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
 typedef struct test_method {
     const char *name;
     sn_status (*analyze)(const sn_curve *curve, analysis *a);
-    bool needs_time;
 } test_method;
 
 static const test_method methods[] = {
-    {"tensile", analyze_tensile, false},
-    {"cyclic", analyze_cyclic, false},
-    {"relaxation", analyze_relaxation, true},
+    {"tensile", analyze_tensile},
+    {"cyclic", analyze_cyclic},
+    {"relaxation", analyze_relaxation},
 };
 
 #define METHODS ((int)(sizeof methods / sizeof methods[0]))
@@ -204,20 +209,17 @@ static sn_status analyze(const char *path, const test_method *method, const char
     sn_status status;
     SN_TRY_GOTO(status, sn_curve_read(path, &record));
     status = sn_curve_from_record(record, &curve);
-    if (status == SN_OK && method->needs_time && !curve.time)
-        status = sn_fail(SN_E_DATA, "column \"time\" is missing: a %s test needs it", method->name);
     if (status == SN_OK && folder) {
         char title[SN_TEXT_MAX];
         snprintf(title, sizeof title, "%s: %s test", cli_basename(path), method->name);
         status = sn_report_create(title, &a->report);
     }
     if (status == SN_OK) {
-        if (!a->quiet) printf("%s: %s test, %d rows\n", path, method->name, curve.count);
-        if (*curve.remarks) say(a, "data", curve.remarks, "");
+        a->rows = curve.count;
         if (a->report) sn_report_text(a->report, "Data: %s. %s", path, curve.remarks);
         status = method->analyze(&curve, a);
+        if (status == SN_OK && *curve.remarks) say(a, "data", curve.remarks, "");
     }
-    if (status != SN_OK) status = sn_fail_within(status, "%s", path);
     if (status == SN_OK && folder) status = write_results(folder, a);
 fail:
     sn_curve_release(&curve);
@@ -242,7 +244,8 @@ static int run(const cli_command *command, int argc, char **argv) {
     for (int k = 0; k < METHODS; k++) {
         names[k] = methods[k].name;
         if (strcmp(test, names[k]) != 0) continue;
-        analysis a = {.test = test, .quiet = arguments.json || arguments.quiet};
+        analysis a = {
+            .path = arguments.item[0], .test = test, .quiet = arguments.json || arguments.quiet};
         sn_status status = analyze(arguments.item[0], &methods[k], folder, &a);
         if (status != SN_OK) {
             json_decref(a.json);

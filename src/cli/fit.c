@@ -25,10 +25,10 @@ static sn_status read_data(const cli_arguments *arguments, fit_data *data) {
         sn_status status = sn_curve_from_record(record, &data->curve[k]);
         data->count = k + 1;
         if (status == SN_OK && !data->curve[k].time)
-            status = sn_fail(SN_E_DATA, "column \"time\" is missing: a fit follows the recorded "
-                                        "history");
+            status =
+                sn_fail(SN_E_DATA, "%s: no time column: a fit follows the recorded history", path);
         sn_record_destroy(record);
-        if (status != SN_OK) return sn_fail_within(status, "%s", path);
+        SN_TRY(status);
         SN_TRY(sn_file_sha256(path, data->sha256[k]));
     }
     return SN_OK;
@@ -165,8 +165,6 @@ static sn_status fit_all(const fit_request *request, const cli_arguments *argume
     def.progress = cli_progress_show;
     def.progress_context = &progress;
     sn_status status = sn_fit(&def, o->fit);
-    if (status != SN_OK && o->data->count == 1)
-        status = sn_fail_within(status, "%s", o->data->path[0]);
     if (status != SN_OK) return status;
     o->fitted = true;
     if (request->hold_out) SN_TRY(hold_out_each(&def, o->data, o->held_out));

@@ -159,7 +159,7 @@ void fit_print(const fit_outcome *o) {
                    100 * o->held_out[k].prediction.rmse / o->held_out[k].prediction.peak);
     }
     sn_exponentials e;
-    if (f->tissue.memory.law->param_count > 0 && compress(o, &e))
+    if (f->tissue.memory.law->param_count > 0 && compress(o, &e) && e.terms > 0)
         printf("  memory as %d exponentials: error at most %.2g of G(0) from %s to %s\n", e.terms,
                e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
     if (!f->converged) printf("  the search did not converge: %s\n", f->reason);

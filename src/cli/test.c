@@ -23,7 +23,6 @@ static sn_status replay(const sn_tissue *tissue, const char *path, sn_record **r
         SN_TRY_GOTO(status, sn_record_append(*record, (double[]){curve.time[i], curve.stretch[i],
                                                                  prediction->predicted[i]}));
 fail:
-    if (status != SN_OK) status = sn_fail_within(status, "%s", path);
     sn_curve_release(&curve);
     sn_record_destroy(measured);
     return status;

@@ -64,6 +64,13 @@ static bool because_of_time(const sn_problem *problem, const sn_fit_constant *c,
     return p->reason[0] != 0;
 }
 
+// " Pa", or nothing for a pure number
+static const char *unit_text(const sn_fit_constant *c) {
+    static _Thread_local char text[SN_NAME_MAX + 1];
+    snprintf(text, sizeof text, " %s", c->param->unit);
+    return strcmp(c->param->unit, "1") == 0 ? "" : text;
+}
+
 static bool because_of_interval(const sn_fit_constant *c, sn_fit_param *p) {
     bool low = meets(c, p->ci95[0], c->low), high = meets(c, p->ci95[1], c->high);
     if (low || high)
@@ -74,8 +81,8 @@ static bool because_of_interval(const sn_fit_constant *c, sn_fit_param *p) {
                              : "above",
                  low && high ? "s" : "");
     else if (wider(c, p, wide_factor, wide_part))
-        snprintf(p->reason, sizeof p->reason, "its 95 %% interval is wide: %.3g to %.3g %s",
-                 p->ci95[0], p->ci95[1], c->param->unit);
+        snprintf(p->reason, sizeof p->reason, "its 95 %% interval is wide: %.3g to %.3g%s",
+                 p->ci95[0], p->ci95[1], unit_text(c));
     return p->reason[0] != 0;
 }
 
@@ -99,11 +106,14 @@ static void judge(const sn_problem *problem, const sn_spread *spread, int j, sn_
     bool low = meets(c, p->value, c->low), high = meets(c, p->value, c->high);
     p->at_bound = low || high;
     p->reason[0] = 0;
-    if (p->at_bound)
-        snprintf(p->reason, sizeof p->reason, "at the %s bound of the search, %.4g %s",
-                 low ? "lower" : "upper", low ? c->low : c->high, c->param->unit);
-    else if (!because_of_time(problem, c, p) && !because_of_interval(c, p))
+    if (because_of_time(problem, c, p)) {
+        // why comes before where: a time that runs to its bound does so because it is hidden
+    } else if (p->at_bound) {
+        snprintf(p->reason, sizeof p->reason, "at the %s bound of the search, %.4g%s",
+                 low ? "lower" : "upper", low ? c->low : c->high, unit_text(c));
+    } else if (!because_of_interval(c, p)) {
         because_of_tie(problem, spread, j, p);
+    }
     p->identifiable = p->reason[0] == 0;
 }
 

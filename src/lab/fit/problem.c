@@ -285,8 +285,9 @@ sn_status sn_problem_create(const sn_fit_def *def, sn_problem **problem) {
     SN_TRY_GOTO(status, set_data(p));
     SN_TRY_GOTO(status, set_constants(p));
     if (p->points <= p->free_count) {
-        status = sn_fail(SN_E_DATA, "fit: %d rows for %d constants: expected more rows than that",
-                         p->points, p->free_count);
+        status = sn_fail(SN_E_DATA, "%s%s: %d rows for %d constants: expected more rows than that",
+                         def->curve[0].name, def->curve_count > 1 ? " and others" : "", p->points,
+                         p->free_count);
         goto fail;
     }
     for (int k = 0; k < def->curve_count; ++k)
