@@ -33,7 +33,7 @@ typedef struct axis {
 typedef struct figure {
     const sn_plot *plot;
     axis x, y;
-    double gap;               // least between bars, along x
+    double gap;               // least between bars, along x; in decades on a logarithmic axis
     int bars, labels, widest; // labels: how many, and the most characters of one
 } figure;
 
@@ -41,6 +41,11 @@ typedef struct figure {
 
 static bool drawable(const figure *f, double x, double y) {
     return isfinite(x) && isfinite(y) && (!f->x.log || x > 0) && (!f->y.log || y > 0);
+}
+
+// How far two values of an axis are apart; in decades on a logarithmic one.
+static double apart(const axis *a, double x, double y) {
+    return a->log ? fabs(log10(x / y)) : fabs(x - y);
 }
 
 // The place of a value along an axis: 0 at its low end, 1 at its high end.
@@ -99,7 +104,8 @@ static bool measure(figure *f) {
             f->x.high = fmax(f->x.high, line->x[i]);
             f->y.low = fmin(f->y.low, line->y[i]);
             f->y.high = fmax(f->y.high, line->y[i]);
-            if (bars && line->x[i] != before) f->gap = fmin(f->gap, fabs(line->x[i] - before));
+            if (bars && line->x[i] != before)
+                f->gap = fmin(f->gap, apart(&f->x, line->x[i], before));
             before = line->x[i];
         }
         f->bars += bars;
@@ -118,7 +124,11 @@ static bool has_lines(const sn_plot *plot) {
 // Lines run from edge to edge, marks and bars get room; what grows from nothing stands on zero.
 static void choose_axes(figure *f) {
     if (!isfinite(f->gap)) f->gap = 1; // one bar
-    if (f->bars && !f->x.log) {
+    if (f->x.log) f->gap = fmin(f->gap, 0.15);
+    if (f->bars && f->x.log) {
+        f->x.low *= pow(10, -0.6 * f->gap);
+        f->x.high *= pow(10, 0.6 * f->gap);
+    } else if (f->bars) {
         f->x.low -= 0.6 * f->gap;
         f->x.high += 0.6 * f->gap;
     }
@@ -190,7 +200,7 @@ static long crowd(const figure *f, double x0, double x1, double y0, double y1) {
         const sn_line *line = &f->plot->line[k];
         bool joined = line->style != SN_POINTS && line->style != SN_BARS, before = false;
         // a bar has a width, and fills what is below its top
-        double half = line->style == SN_BARS ? 0.5 * f->gap / (f->x.high - f->x.low) : 0;
+        double half = line->style == SN_BARS ? 0.5 * f->gap / apart(&f->x, f->x.high, f->x.low) : 0;
         double px = 0, py = 0;
         for (int i = 0; i < line->count; i++) {
             bool draw = drawable(f, line->x[i], line->y[i]);
@@ -245,9 +255,13 @@ static void add_legend(sn_buffer *out, const figure *f) {
 
 static void add_point(sn_buffer *out, const figure *f, const sn_line *line, int i, int bar) {
     if (line->style == SN_BARS) {
-        double width = 0.8 * f->gap / f->bars;
-        sn_buffer_print(out, "%.9g %.9g %.9g\n", line->x[i] + (bar - 0.5 * (f->bars - 1)) * width,
-                        line->y[i], width);
+        double width = 0.8 * f->gap / f->bars, shift = (bar - 0.5 * (f->bars - 1)) * width;
+        double low = line->x[i] + shift - 0.5 * width, high = low + width;
+        if (f->x.log) {
+            low = line->x[i] * pow(10, shift - 0.5 * width);
+            high = low * pow(10, width);
+        }
+        sn_buffer_print(out, "%.9g %.9g %.9g\n", 0.5 * (low + high), line->y[i], high - low);
     } else {
         sn_buffer_print(out, "%.9g %.9g\n", line->x[i], line->y[i]);
     }

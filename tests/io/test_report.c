@@ -251,6 +251,30 @@ static void test_without_gnuplot(void **state) {
     sn_report_destroy(report);
 }
 
+// Values are shown in the units of the labels: the table that stands in for a figure has them.
+static void test_scaled(void **state) {
+    (void)state;
+    const double x[] = {0.25, 0.5}, y[] = {2000, 3500};
+    const sn_line line = {"stress", SN_LINE, 0, 2, x, y};
+    sn_plot plot = {.title = "t", .x_label = "time [ms]", .y_label = "stress [kPa]"};
+    plot.line_count = 1, plot.line = &line;
+    plot.x_scale = 1e3, plot.y_scale = 1e-3;
+    char *before = strdup(getenv("PATH"));
+    setenv("PATH", "", 1);
+    sn_report *report;
+    CHECK_OK(sn_report_create("scaled", &report));
+    sn_report_plot(report, &plot);
+    setenv("PATH", before, 1);
+    free(before);
+    char *text = write_and_read(report, "scaled.html");
+    static const char *const shown[] = {">250<", ">500<", ">2<", ">3.5<"};
+    for (int k = 0; k < 4; k++) assert_int_equal(count_of(text, shown[k]), 1);
+    assert_int_equal(count_of(text, "2000"), 0);
+    assert_true(x[0] == 0.25 && y[0] == 2000); // the caller's values stay
+    free(text);
+    sn_report_destroy(report);
+}
+
 //---- bodies --------------------------------------------------------------------------------------
 
 // The bytes of an attribute of the k-th canvas, from base64.
@@ -466,6 +490,7 @@ int main(void) {
         cmocka_unit_test(test_many_points),
         cmocka_unit_test(test_hostile),
         cmocka_unit_test(test_without_gnuplot),
+        cmocka_unit_test(test_scaled),
         cmocka_unit_test(test_bodies),
         cmocka_unit_test(test_smooth_body),
         cmocka_unit_test(test_memory),
