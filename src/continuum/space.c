@@ -5,15 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static void subtract(const double *a, const double *b, double *out) {
-    for (int i = 0; i < 3; i++) out[i] = a[i] - b[i];
-}
-
-static void cross(const double *a, const double *b, double *out) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
+#include "base/vector.h"
 
 int sn_fe_space_midside(const sn_fe_space *s, int a, int b) {
     int first = a < b ? a : b, second = a < b ? b : a;
@@ -62,8 +54,8 @@ static double cell_gradients(const sn_fe_space *s, const sn_mesh *mesh, int cell
     const double *x[4];
     double side[3][3], raw[4][3];
     for (int k = 0; k < 4; k++) x[k] = mesh->node + 3 * mesh->cell[4 * cell + k];
-    for (int k = 0; k < 3; k++) subtract(x[k + 1], x[0], side[k]);
-    for (int k = 0; k < 3; k++) cross(side[(k + 1) % 3], side[(k + 2) % 3], raw[k + 1]);
+    for (int k = 0; k < 3; k++) sub3(x[k + 1], x[0], side[k]);
+    for (int k = 0; k < 3; k++) cross3(side[(k + 1) % 3], side[(k + 2) % 3], raw[k + 1]);
     double six = 0.0;
     for (int i = 0; i < 3; i++) six += side[0][i] * raw[1][i];
     for (int i = 0; i < 3; i++) raw[0][i] = -(raw[1][i] + raw[2][i] + raw[3][i]);
@@ -159,8 +151,8 @@ sn_status sn_fe_faces_of(const sn_fe_space *s, const sn_mesh *mesh, int surface,
             node[a] = sn_fe_space_midside(s, corner[sn_fe_face_edge[a - 3][0]],
                                           corner[sn_fe_face_edge[a - 3][1]]);
         for (int k = 0; k < 2; k++)
-            subtract(s->rest + 3 * corner[k + 1], s->rest + 3 * corner[0], side[k]);
-        cross(side[0], side[1], normal);
+            sub3(s->rest + 3 * corner[k + 1], s->rest + 3 * corner[0], side[k]);
+        cross3(side[0], side[1], normal);
         out->area[f] =
             0.5 * sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
     }

@@ -3,8 +3,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 sn_springs_def sn_springs_def_default(void) {
     return (sn_springs_def){.rung = SN_RUNG_COUPLED,

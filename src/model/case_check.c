@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 // a tool may start this deep in the body, of the body's size: rounding of coordinates
 #define START_DEPTH 1e-6

@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 #define MODES 6
 // A Gram eigenvalue below this times the largest is rounding. Supports on a patch of a

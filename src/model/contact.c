@@ -13,7 +13,7 @@
 //     dn/dr = P/p,  dg/dr = -n,  ds/dr = (1 - n.w/p) P - n s/p
 #include <string.h>
 
-#include "model/vector.h"
+#include "base/vector.h"
 #include "sinew/model.h"
 
 void sn_tool_centre(const sn_tool *tool, double t, double centre[3]) {

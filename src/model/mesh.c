@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "model/vector.h"
+#include "base/vector.h"
 
 sn_status sn_mesh_create(int node_count, int cell_count, int region_count, int surface_count,
                          sn_mesh **mesh) {

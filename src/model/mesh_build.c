@@ -7,10 +7,10 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/disc.h"
 #include "model/lattice.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 #define PI 3.14159265358979323846
 

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 // a cell of less volume than this times the cube of its longest edge is flat
 #define FLAT 1e-12

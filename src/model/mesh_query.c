@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 int sn_mesh_surface(const sn_mesh *mesh, const char *name) {
     for (int s = 0; s < mesh->surface_count; s++)

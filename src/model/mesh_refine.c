@@ -8,8 +8,8 @@
 // Bey's, so that Kuhn cells stay Kuhn cells however often they are refined.
 #include <string.h>
 
+#include "base/vector.h"
 #include "model/mesh.h"
-#include "model/vector.h"
 
 // Midpoints: node node_count + e stands on edge e.
 typedef struct midpoints {
