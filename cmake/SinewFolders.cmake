@@ -131,6 +131,7 @@ function(sn_install)
   install(FILES ${PROJECT_BINARY_DIR}/sinewConfig.cmake
                 ${PROJECT_BINARY_DIR}/sinewConfigVersion.cmake
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/sinew)
+  file(RELATIVE_PATH SINEW_PC_TO_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
   configure_file(${PROJECT_SOURCE_DIR}/cmake/sinew.pc.in ${PROJECT_BINARY_DIR}/sinew.pc @ONLY)
   install(FILES ${PROJECT_BINARY_DIR}/sinew.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
