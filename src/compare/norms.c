@@ -8,7 +8,7 @@
 static const double *field_values(const sn_frame *frame, const char *name) {
     for (int k = 0; k < frame->field_count; k++)
         if (strcmp(frame->fields[k].name, name) == 0) return frame->fields[k].value;
-    SN_ASSERT(!"engines hand out displacement and cauchy_stress");
+    SN_ASSERT(false); // every engine hands out displacement and cauchy_stress
     return NULL;
 }
 

@@ -8,7 +8,7 @@ static void error_text_is_kept_and_prefixed(void **state) {
     assert_string_equal(sn_error_text(), "found \"kpa\"");
     assert_int_equal(sn_fail_within(SN_E_UNIT, "%s:%d", "a.yaml", 7), SN_E_UNIT);
     assert_string_equal(sn_error_text(), "a.yaml:7: found \"kpa\"");
-    for (int s = 0; s < SN_STATUS_COUNT; s++) assert_true(strlen(sn_status_text(s)) > 3);
+    for (int s = 0; s < SN_STATUS_COUNT; s++) assert_true(strlen(sn_status_text((sn_status)s)) > 3);
 }
 
 static void long_text_is_cut_not_overrun(void **state) {
