@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Three kinds of law. A uniaxial law gives the nominal stress T (force over original area) at a
-// stretch. A solid law gives the second Piola-Kirchhoff stress S at a Green strain E. Its energy is
+// stretch. A membrane law gives the stresses in the plane of a thin sheet, see sn_law_membrane(). A
+// solid law gives the second Piola-Kirchhoff stress S at a Green strain E. Its energy is
 //     W(E) = W_d(E) + U(J),   U(J) = K/2 (J - 1)^2,
 // W_d the distortional part, K the bulk modulus, J the volume ratio; springs, mixed elements and
 // incompressible tests each treat U in their own way, so the functions below give W_d alone.
@@ -23,9 +24,10 @@ typedef enum sn_law_kind { SN_LAW_UNIAXIAL, SN_LAW_SOLID, SN_LAW_MEMBRANE } sn_l
 
 /// Small-strain moduli of a law, pascals.
 typedef struct sn_moduli {
-    double young; ///< Young's modulus; for a uniaxial law its slope at rest
-    double shear; ///< shear modulus (of the isotropic part where the law has fibres); solid laws
-    double bulk;  ///< bulk modulus; INFINITY for incompressible; solid laws
+    double young; ///< Young's modulus; for a uniaxial law its slope at rest; for a membrane that
+                  ///< of a strip along the first axis
+    double shear; ///< shear modulus (of the isotropic part where the law has fibres); not uniaxial
+    double bulk;  ///< bulk modulus; INFINITY for incompressible, as membranes are; not uniaxial
 } sn_moduli;
 
 typedef struct sn_law_kernels sn_law_kernels;
@@ -36,7 +38,7 @@ typedef struct sn_law {
     const char *text;   ///< one sentence
     const char *source; ///< equation of the paper, or the publication
     sn_law_kind kind;
-    bool fibres; ///< strains are expected in axes of which the first is the fibre
+    bool fibres; ///< strains are expected in axes of the material, the first of them the fibre's
     int param_count;
     const sn_param *params;
     /// Nullable: conditions beyond the table's ranges (convexity); stores a text.
@@ -78,6 +80,20 @@ SN_API void sn_law_solid_f(const sn_law *law, const float *value, int terms, int
                            float *W, float *S, float *D);
 SN_API void sn_law_uniaxial_f(const sn_law *law, const float *value, int terms, int n,
                               const float *stretch, float *W, float *T, float *dT);
+
+/// A membrane law at n points: a thin sheet that is stressed in its plane only. Its thickness is
+/// free and follows from constant volume, with stretch 1/sqrt(det(2E + I)), so there is no pressure
+/// to find. E12 and E21 count as independent: S12 = dW/dE12 with E21 held, half of the derivative
+/// where one symbol stands for both; and e = (E11, E22, 2 E12) in the tangent.
+/// @param E  Green strain [1] in material axes: 11 22 12                    (3 x n)
+/// @param W  energy per original volume, J/m3, Nullable                     (n)
+/// @param S  second Piola-Kirchhoff stress: 11 22 12, Pa, Nullable          (3 x n)
+/// @param D  tangent dS/de, upper triangle by rows, Pa, Nullable            (6 x n)
+/// Source: equations (19) to (21).
+SN_API void sn_law_membrane(const sn_law *law, const double *value, int terms, int n,
+                            const double *E, double *W, double *S, double *D);
+SN_API void sn_law_membrane_f(const sn_law *law, const float *value, int terms, int n,
+                              const float *E, float *W, float *S, float *D);
 
 #ifdef __cplusplus
 }

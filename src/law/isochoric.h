@@ -116,7 +116,8 @@ SN_INLINE void isochoric_project(const isochoric *q, solid_point *out) {
 
 /// Kernel of a law whose `point` is a function of Ebar.
 #define SN_LAW_ISOCHORIC_KERNEL(name)                                                              \
-    SN_INLINE void isochoric_point(const real *p, const wide E[6], solid_point *out) {             \
+    SN_INLINE void isochoric_point(const real *p, int terms, const wide E[6], solid_point *out) {  \
+        (void)terms;                                                                               \
         isochoric q;                                                                               \
         wide Ebar[6];                                                                              \
         isochoric_split(E, &q);                                                                    \
@@ -187,7 +188,8 @@ SN_INLINE void invariant_point(const isochoric *q, const invariant_energy *w, in
 
 /// Kernel of a law that is a function `energy` of the invariants; `uses`: its derivatives.
 #define SN_LAW_INVARIANT_KERNEL(name, uses)                                                        \
-    SN_INLINE void invariant_law(const real *p, const wide E[6], solid_point *out) {               \
+    SN_INLINE void invariant_law(const real *p, int terms, const wide E[6], solid_point *out) {    \
+        (void)terms;                                                                               \
         isochoric q;                                                                               \
         wide i1, i2;                                                                               \
         isochoric_split(E, &q);                                                                    \

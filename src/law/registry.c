@@ -11,9 +11,15 @@
     X(hookean)                                                                                     \
     X(neo_hookean)                                                                                 \
     X(mooney_rivlin)                                                                               \
+    X(ogden)                                                                                       \
     X(demiray)                                                                                     \
     X(veronda_westmann)                                                                            \
-    X(guccione)
+    X(fung)                                                                                        \
+    X(fung_general)                                                                                \
+    X(guccione)                                                                                    \
+    X(hgo)                                                                                         \
+    X(fung_skin)                                                                                   \
+    X(fung_planar)
 
 #define DECLARE(name) extern const sn_law sn_law_##name;
 LAWS(DECLARE)
@@ -81,6 +87,20 @@ void sn_law_solid(const sn_law *law, const double *value, int terms, int n, cons
 void sn_law_solid_f(const sn_law *law, const float *value, int terms, int n, const float *E,
                     float *W, float *S, float *D) {
     SN_ASSERT(law->kind == SN_LAW_SOLID);
+    sn_law_batch_32 batch = {value, terms, n, E, W, S, D};
+    law->kernels->f32[sn_isa_current()](&batch);
+}
+
+void sn_law_membrane(const sn_law *law, const double *value, int terms, int n, const double *E,
+                     double *W, double *S, double *D) {
+    SN_ASSERT(law->kind == SN_LAW_MEMBRANE);
+    sn_law_batch_64 batch = {value, terms, n, E, W, S, D};
+    law->kernels->f64[sn_isa_current()](&batch);
+}
+
+void sn_law_membrane_f(const sn_law *law, const float *value, int terms, int n, const float *E,
+                       float *W, float *S, float *D) {
+    SN_ASSERT(law->kind == SN_LAW_MEMBRANE);
     sn_law_batch_32 batch = {value, terms, n, E, W, S, D};
     law->kernels->f32[sn_isa_current()](&batch);
 }

@@ -3,7 +3,8 @@
 //
 // A law's file holds a pointwise function and one line that makes the kernels of it:
 //     SN_LAW_SOLID_KERNEL(name)       point(p, E, out): W_d, S, D at the Green strain E
-//     SN_LAW_ISOCHORIC_KERNEL(name)   the same, at the isochoric strain (law/isochoric.h)
+//     SN_LAW_LIST_KERNEL(name)        point(p, terms, E, out): the same, constants in lists
+//     SN_LAW_ISOCHORIC_KERNEL(name)   point(p, E, out), at the isochoric strain (law/isochoric.h)
 //     SN_LAW_INVARIANT_KERNEL(name)   energy(p, i1, i2): a function of invariants (law/isochoric.h)
 // The point function fills everything; there are three copies of the loop (stress; energy and
 // stress; all), and from each the compiler drops what has no use there.
@@ -19,7 +20,8 @@ typedef struct solid_point {
     wide D[21]; ///< tangent, Pa
 } solid_point;
 
-typedef void solid_law(const real *p, const wide E[6], solid_point *out);
+/// A law: constants, length of the lists among them, strain.
+typedef void solid_law(const real *p, int terms, const wide E[6], solid_point *out);
 
 enum { SOLID_STRESS, SOLID_ENERGY, SOLID_TANGENT };
 
@@ -66,7 +68,7 @@ SN_INLINE void solid_batch(const law_batch *b, solid_law *law, int level) {
         wide E[6];
         SOLID_UNROLL for (int k = 0; k < 6; k++) E[k] = wide_load(from + k * stride);
         solid_point out;
-        law(b->value, E, &out);
+        law(b->value, b->terms, E, &out);
         if (b->S) solid_store(out.S, 6, b->S + i, n, count, rest);
         if (level >= SOLID_ENERGY && b->W) solid_store(&out.W, 1, b->W + i, n, count, rest);
         if (level >= SOLID_TANGENT) solid_store(out.D, 21, b->D + i, n, count, rest);
@@ -85,4 +87,11 @@ SN_INLINE void solid_batch(const law_batch *b, solid_law *law, int level) {
             solid_batch(b, law, SOLID_STRESS);                                                     \
     }
 
-#define SN_LAW_SOLID_KERNEL(name) SN_LAW_KERNEL_OF(name, point)
+#define SN_LAW_SOLID_KERNEL(name)                                                                  \
+    SN_INLINE void plain_point(const real *p, int terms, const wide E[6], solid_point *out) {      \
+        (void)terms;                                                                               \
+        point(p, E, out);                                                                          \
+    }                                                                                              \
+    SN_LAW_KERNEL_OF(name, plain_point)
+
+#define SN_LAW_LIST_KERNEL(name) SN_LAW_KERNEL_OF(name, point)

@@ -106,6 +106,36 @@ static void constants_come_back_without_noise(void **state) {
     check_recovery("neo-hookean", neo, 2, oracle_memory("prony", 2, prony, 4), 4);
 }
 
+// lists of one value a term are searched, and only where the law's own condition holds
+static void ogden_is_fitted_by_terms(void **state) {
+    (void)state;
+    const double value[] = {-310.0, -6.7, (double)INFINITY};
+    uint64_t seed = 1;
+    sn_tissue tissue = oracle_tissue("ogden", value, 3);
+    tissue.terms = 1;
+    sn_curve curve = virtual_ramp(&tissue, 1.0, 1.3, 0.0, &seed);
+    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_result *r = sn_alloc(1, sizeof *r);
+    CHECK_OK(sn_fit(&def, r));
+    assert_int_equal(r->tissue.terms, 1);
+    // no memory, no steps: what the search stops at
+    CHECK_REL(param_of(r, "mu1")->value, value[0], 1e-6);
+    CHECK_REL(param_of(r, "alpha1")->value, value[1], 1e-6);
+    CHECK_OK(sn_tissue_check(&r->tissue));
+    sn_fit_release(r);
+    for (int i = 0; i < curve.count; ++i) curve.stress[i] = -curve.stress[i];
+    CHECK_OK(sn_fit(&def, r)); // only mu alpha < 0 would follow this curve
+    CHECK_OK(sn_tissue_check(&r->tissue));
+    assert_true(r->r_squared < 0.5);
+    sn_fit_release(r);
+    def.law = sn_law_find("fung");
+    CHECK_FAILS(sn_fit(&def, r), SN_E_UNSUPPORTED, "list a of 9 constants");
+    def.law = sn_law_find("fung-general");
+    CHECK_FAILS(sn_fit(&def, r), SN_E_UNSUPPORTED, "list alpha of 9 constants");
+    sn_free(r);
+    sn_curve_release(&curve);
+}
+
 // a finite bulk modulus is taken when it is fixed, and is no parameter when it is not
 static void bulk_modulus_is_fixed_or_infinite(void **state) {
     (void)state;
@@ -389,6 +419,7 @@ static void refusals_say_what_and_where(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constants_come_back_without_noise),
+        cmocka_unit_test(ogden_is_fitted_by_terms),
         cmocka_unit_test(bulk_modulus_is_fixed_or_infinite),
         cmocka_unit_test(noisy_ramps_give_intervals),
         cmocka_unit_test(linear_law_is_linear_regression),

@@ -268,6 +268,14 @@ static sn_status check_definition(const sn_fit_def *def) {
                        "fit: law %s is a membrane and the curves are uniaxial: expected a uniaxial "
                        "or a solid law",
                        def->law->name);
+    for (int k = 0; k < def->law->param_count; ++k)
+        if (def->law->params[k].length > 1)
+            return sn_fail(
+                SN_E_UNSUPPORTED,
+                "fit: law %s has the list %s of %d constants for three directions, which "
+                "pulls along one axis cannot tell apart: expected a law such as "
+                "exponential, demiray or guccione",
+                def->law->name, def->law->params[k].name, def->law->params[k].length);
     for (int k = 0; k < def->curve_count; ++k)
         if (def->curve[k].count < 3)
             return sn_fail(SN_E_DATA, "%s: %d rows: expected at least 3", def->curve[k].name,
