@@ -1,6 +1,7 @@
 // Nodal forces of every rung against independent formulas.
 // SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
+#include "laws.h"
 #include "springs/net.h"
 
 static const double size[3] = {0.03, 0.02, 0.025};
@@ -108,27 +109,6 @@ static void add_element(const sn_case *c, int cell, const double Q[9], const dou
             f[4 * n[a + 1] + d] += sum;
             f[4 * n[0] + d] -= sum;
         }
-}
-
-// constants of some size for any solid law: convex, stresses of kilopascals
-static sn_tissue some_tissue(const sn_law *law) {
-    static const double nine[] = {6, 4, 3, 1, -0.5, 0.8, 1.5, 2, 2.5};
-    sn_tissue t = make_tissue(law->name);
-    double *value = t.value;
-    for (int k = 0; k < law->param_count; k++) {
-        const sn_param *p = &law->params[k];
-        if (p->length == SN_PARAM_LIST) t.terms = 2;
-        for (int i = 0; i < sn_param_length(p, t.terms); i++) {
-            double part = p->length == 9 ? nine[i] : 1 + 0.25 * i;
-            *value++ = part * (!strcmp(p->name, "bulk_modulus") ? 3e4
-                               : !strcmp(p->unit, "Pa")         ? 2e3 + 500 * k
-                               : p->max < 0.4                   ? 0.1
-                               : p->max < 1                     ? 0.4
-                                                                : 1.3);
-        }
-    }
-    CHECK_OK(sn_tissue_check(&t));
-    return t;
 }
 
 static void coupled_cells_are_linear_elements(void **state) {
