@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A constant is called identifiable unless one of these holds; the first that does is the reason.
-//  1. It stands at a bound of the search.
-//  2. It is a relaxation time that the test cannot show: under a third of the fastest ramp (the
-//  ramp
-//     hides it), under the shortest sampling interval of a ramp, or over the longest record.
+//  1. It is a relaxation time that the test cannot show: under a third of the fastest ramp (the
+//     ramp hides it), under the shortest sampling interval of a ramp, or over the longest record;
+//     and its interval is at least moderately wide, see 5.
+//  2. It stands at a bound of the search.
 //  3. Its 95 % interval is open: it reaches a bound of the search.
 //  4. Its interval is wide: ends more than a factor of 10 apart where the scale is the logarithm,
-//  or
-//     more than the value apart where it is not.
+//     or more than the value apart where it is not.
 //  5. Its interval is moderately wide (a factor of 2, or 0.7 of the value) and it is tied to
-//  another
-//     constant by a correlation beyond 0.98: only a combination of the two is known.
+//     another constant by a correlation beyond 0.98: only a combination of the two is known.
 // A correlation alone is no reason: B and C of an exponential law are tied in every test, and
 // narrow intervals of both say that the data tell them apart.
 #include <math.h>
@@ -50,7 +48,8 @@ static void from_profile(const sn_fit_constant *c, const double interval[2], dou
 }
 
 static bool because_of_time(const sn_problem *problem, const sn_fit_constant *c, sn_fit_param *p) {
-    if (!c->time) return false;
+    // a narrow interval shows that the data do see it
+    if (!c->time || !wider(c, p, moderate_factor, moderate_part)) return false;
     if (p->value < problem->sampling)
         snprintf(p->reason, sizeof p->reason,
                  "shorter than the shortest sampling interval of a ramp, %.3g s",
