@@ -14,19 +14,35 @@ extern "C" {
 typedef enum sn_protocol_kind {
     SN_PROTOCOL_TENSILE,
     SN_PROTOCOL_CYCLIC,
-    SN_PROTOCOL_RELAXATION
+    SN_PROTOCOL_RELAXATION,
+    SN_PROTOCOL_HYSTERESIS,
+    SN_PROTOCOL_DYNAMIC,
+    SN_PROTOCOL_CREEP,
+    SN_PROTOCOL_BIAXIAL,
+    SN_PROTOCOL_SHEAR
 } sn_protocol_kind;
+
+/// How a cyclic test goes from 1 to the target and back: straight, or as (1 - cos)/2, drawn with
+/// 100 straight lines a way.
+typedef enum sn_wave { SN_WAVE_TRIANGLE, SN_WAVE_SINE } sn_wave;
 
 /// What the machine does. Fill from sn_protocol_default().
 typedef struct sn_protocol {
     sn_protocol_kind kind;
-    double stretch; ///< target stretch [1]
-    double ramp;    ///< seconds from 1 to the target; 0: from rate
-    double rate;    ///< stretch per second; used where ramp is 0
-    double hold;    ///< seconds at the target (relaxation)
-    int cycles;     ///< triangles 1 -> target -> 1 (cyclic)
-    int points;     ///< rows of the curve
+    double stretch;              ///< target stretch; mean stretch (dynamic) [1]
+    double ramp;                 ///< seconds from rest to the target; 0: from rate
+    double rate;                 ///< stretch per second; used where ramp is 0
+    double hold;                 ///< seconds at the target (relaxation) or under the stress (creep)
+    double recovery;             ///< seconds without stress after unloading; 0: none (creep)
+    double stress;               ///< nominal stress that is held, Pa (creep)
+    double stretch_1, stretch_2; ///< targets along two axes (biaxial) [1]
+    double shear;                ///< target shear strain [1]
+    double from, to; ///< ends of a sweep: ramp time, s (hysteresis), or frequency, Hz (dynamic)
+    int cycles;      ///< 1 -> target -> 1 (cyclic)
+    sn_wave wave;    ///< of a cycle; triangle by default (cyclic)
+    int points;      ///< rows of the curve
 } sn_protocol;
+#define SN_PROTOCOL_PARAMS_MAX 12 ///< most parameters of one protocol
 
 SN_API int sn_protocol_count(void);
 SN_API const char *sn_protocol_name(sn_protocol_kind kind);
@@ -35,8 +51,11 @@ SN_API bool sn_protocol_find(const char *name, sn_protocol_kind *kind);
 /// The parameters of a protocol with units and defaults (options of the command).
 SN_API const sn_param *sn_protocol_params(sn_protocol_kind kind, int *count);
 SN_API sn_protocol sn_protocol_default(sn_protocol_kind kind);
-/// The stretch over time, and the times at which the machine records (in *time, sn_alloc'd,
-/// protocol->points of them; relaxation spaces them by the logarithm after the ramp).
+/// Sets a parameter by its name in the protocol's table. @return SN_OK, SN_E_NAME.
+SN_API sn_status sn_protocol_set(sn_protocol *protocol, const char *name, double value);
+/// The stretch over time of a tensile, cyclic or relaxation test, and the times at which the
+/// machine records (in *time, sn_alloc'd, protocol->points of them; relaxation spaces them by the
+/// logarithm after the ramp).
 SN_API sn_status sn_protocol_history(const sn_protocol *protocol, sn_history **stretch,
                                      double **time);
 
@@ -49,7 +68,25 @@ SN_API sn_status sn_protocol_history(const sn_protocol *protocol, sn_history **s
 /// @return SN_OK, SN_E_UNSUPPORTED (membrane law), SN_E_RANGE, SN_E_SOLVER, SN_E_MEMORY.
 SN_API sn_status sn_lab_uniaxial(const sn_tissue *tissue, const sn_history *stretch, int n,
                                  const double *time, double *stress);
-/// Runs a protocol: a record with time [s], stretch [1], stress [Pa], and cycle [1] for cyclic.
+/// Creep test with free sides: stretch at n times under a history of nominal stress that starts at
+/// t = stress->time[0] from rest. A stress of other than 0 at the start is a step. Uniaxial laws
+/// and incompressible solids that are alike across the pull. Accurate to 1e-7 of the largest
+/// strain.
+/// @param stretch  [1]                                                      (n)
+/// @return SN_OK, SN_E_UNSUPPORTED (other laws), SN_E_DATA (time), SN_E_SOLVER (the specimen gives
+/// way under the stress, no convergence), SN_E_MEMORY.
+SN_API sn_status sn_lab_creep(const sn_tissue *tissue, const sn_history *stress, int n,
+                              const double *time, double *stretch);
+/// Runs a protocol. The columns of the record:
+///     tensile, cyclic, relaxation   time [s], stretch [1], stress [Pa] (nominal); cyclic: cycle
+///     [1] hysteresis                    frequency [Hz], hysteresis [1] dynamic frequency [Hz],
+///     storage_modulus [Pa], loss_modulus [Pa]
+/// Hysteresis is loop area over area under the loading curve of one triangle 1 -> stretch -> 1 from
+/// rest, frequency 1/(2 ramp time); it is good to 1e-6. It exceeds 1 where the tissue must be
+/// pushed back. Dynamic moduli are d(nominal stress)/d(stretch) of a small oscillation about a
+/// stretch held for ever.
+/// @return SN_OK, SN_E_RANGE (a parameter), SN_E_UNSUPPORTED (a law and a test that do not go
+/// together), SN_E_SOLVER, SN_E_MEMORY.
 SN_API sn_status sn_lab_test(const sn_tissue *tissue, const sn_protocol *protocol,
                              sn_record **record);
 
@@ -117,6 +154,22 @@ typedef struct sn_relaxation_result {
 /// Properties of a ramp and hold. The ramp ends at the first row within 1 % of the plateau.
 /// @return SN_OK, SN_E_DATA (no time, constant stretch, no hold of at least 3 rows).
 SN_API sn_status sn_reduce_relaxation(const sn_curve *curve, sn_relaxation_result *out);
+
+typedef struct sn_creep_result {
+    double stress;             ///< held nominal stress over that of the first row, Pa
+    double ramp_s, hold_s;     ///< the loading, and the time under the stress, found in the data
+    double initial_compliance; ///< strain over stress at the start of the hold, 1/Pa
+    double compliance;         ///< the same at its end
+    double creep_rate;         ///< smallest slope of the strain over a quarter of the hold, 1/s
+    double time_to_rupture;    ///< from the start of the hold, s; NAN where it did not break
+    double recovered_fraction; ///< of the strain at the end of the hold; NAN where not unloaded
+} sn_creep_result;
+/// Properties of a creep test. Strain is stretch less that of the first row. The hold is from the
+/// first to the last row within 2 % of the held stress. The stress falling under half of it ends
+/// the test: as a rupture where the strain stands above that of the hold's end, as an unloading
+/// where it does not.
+/// @return SN_OK, SN_E_DATA (no time, no stress, the stress not held, fewer than 5 rows of hold).
+SN_API sn_status sn_reduce_creep(const sn_curve *curve, sn_creep_result *out);
 
 //---- fitting -------------------------------------------------------------------------------------
 

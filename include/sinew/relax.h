@@ -78,6 +78,24 @@ SN_API double sn_exponentials_at(const sn_exponentials *e, double t);
 SN_API void sn_exponentials_factors(const sn_exponentials *e, double h, double *decay,
                                     double *gain);
 
+/// Creep function J(t), the deflection under a unit step of load, with G(0) = 1 as the unit of
+/// stiffness: int_0^t G(t - s) J(s) ds = t.
+///     J(t) = instant + flow t + sum j_i (1 - exp(-t/tau_i)),  every j_i > 0
+typedef struct sn_retardations {
+    int terms;
+    double instant;               ///< J(0): 1; 0 under a viscous part
+    double flow;                  ///< 1/s: the end of a fluid (g_inf = 0), else 0
+    double j[SN_TERMS_MAX + 1];   ///< compliances of the Kelvin-Voigt bodies in series
+    double tau[SN_TERMS_MAX + 1]; ///< their retardation times, seconds, falling
+} sn_retardations;
+/// Creep function of a sum of exponentials, exact but for rounding.
+/// Source: equations (23), (27), (28) and (31) for sums: the zeros of s times the transform of G.
+SN_API void sn_exponentials_creep(const sn_exponentials *e, sn_retardations *out);
+/// Creep function of any memory, through sn_memory_expand(). @return SN_OK, SN_E_RANGE.
+SN_API sn_status sn_memory_creep(const sn_memory *memory, sn_retardations *out);
+/// J at t >= 0.
+SN_API double sn_retardations_at(const sn_retardations *r, double t);
+
 #ifdef __cplusplus
 }
 #endif

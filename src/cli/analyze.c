@@ -180,6 +180,68 @@ static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
     return SN_OK;
 }
 
+//---- creep ---------------------------------------------------------------------------------------
+
+static void creep_plot(const sn_curve *curve, sn_report *report) {
+    sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stretch};
+    sn_report_plot(report, &(sn_plot){.title = "Stretch over time",
+                                      .x_label = "time [s]",
+                                      .y_label = "stretch [1]",
+                                      .line_count = 1,
+                                      .line = &line});
+    line.y = curve->stress;
+    sn_report_plot(report, &(sn_plot){.title = "Stress over time",
+                                      .x_label = "time [s]",
+                                      .y_label = "nominal stress [kPa]",
+                                      .y_scale = 1e-3,
+                                      .line_count = 1,
+                                      .line = &line});
+}
+
+static sn_status analyze_creep(const sn_curve *curve, analysis *a) {
+    sn_creep_result r;
+    SN_TRY(sn_reduce_creep(curve, &r));
+    a->json = json_object();
+    cli_put_number(a->json, "compliance_per_Pa", r.compliance);
+    cli_put_number(a->json, "initial_compliance_per_Pa", r.initial_compliance);
+    cli_put_number(a->json, "creep_rate_per_s", r.creep_rate);
+    cli_put_number(a->json, "time_to_rupture_s", r.time_to_rupture);
+    cli_put_number(a->json, "recovered_fraction", r.recovered_fraction);
+    cli_put_number(a->json, "stress_Pa", r.stress);
+    cli_put_number(a->json, "ramp_s", r.ramp_s);
+    cli_put_number(a->json, "hold_s", r.hold_s);
+    char initial[64], compliance[64], rate[64], recovered[64] = "—";
+    snprintf(initial, sizeof initial, "%.4g 1/Pa", r.initial_compliance);
+    snprintf(compliance, sizeof compliance, "%.4g 1/Pa", r.compliance);
+    snprintf(rate, sizeof rate, "%.4g 1/s", r.creep_rate);
+    if (isfinite(r.recovered_fraction))
+        snprintf(recovered, sizeof recovered, "%.1f %%", 100 * r.recovered_fraction);
+    const char *cells[] = {"property",
+                           "value",
+                           "held stress",
+                           cli_show(r.stress, "Pa"),
+                           "loading",
+                           cli_show(r.ramp_s, "s"),
+                           "hold",
+                           cli_show(r.hold_s, "s"),
+                           "compliance, start of the hold",
+                           initial,
+                           "compliance, end of the hold",
+                           compliance,
+                           "creep rate, smallest",
+                           rate,
+                           "time to rupture",
+                           cli_show(r.time_to_rupture, "s"),
+                           "recovered, of the strain",
+                           recovered};
+    enum { ROWS = sizeof cells / sizeof cells[0] / 2 };
+    for (int i = 1; i < ROWS; i++) say(a, cells[2 * i], cells[2 * i + 1], "");
+    if (!a->report) return SN_OK;
+    sn_report_table(a->report, ROWS, 2, cells, "Creep");
+    creep_plot(curve, a->report);
+    return SN_OK;
+}
+
 //---- the command ---------------------------------------------------------------------------------
 
 typedef struct test_method {
@@ -190,6 +252,7 @@ typedef struct test_method {
 static const test_method methods[] = {
     {"tensile", analyze_tensile},
     {"cyclic", analyze_cyclic},
+    {"creep", analyze_creep},
     {"relaxation", analyze_relaxation},
 };
 
@@ -231,7 +294,7 @@ fail:
 static int run(const cli_command *command, int argc, char **argv) {
     const char *test = NULL, *folder = NULL;
     const cli_option options[] = {
-        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic or relaxation"},
+        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic, creep or relaxation"},
         {"out", CLI_TEXT, "DIR", NULL, &folder, "writes analysis.json and report.html there"},
     };
     cli_arguments arguments;
@@ -239,7 +302,8 @@ static int run(const cli_command *command, int argc, char **argv) {
     if (code >= 0) return code;
     if (arguments.count != 1)
         return cli_refuse("analyze: expected one curve, got %d", arguments.count);
-    if (!test) return cli_refuse("analyze: --test is missing: tensile, cyclic or relaxation");
+    if (!test)
+        return cli_refuse("analyze: --test is missing: tensile, cyclic, creep or relaxation");
     const char *names[METHODS];
     for (int k = 0; k < METHODS; k++) {
         names[k] = methods[k].name;
@@ -261,6 +325,6 @@ static int run(const cli_command *command, int argc, char **argv) {
 }
 
 const cli_command cli_analyze = {
-    "analyze", "CURVE.csv --test tensile|cyclic|relaxation [--out DIR]",
-    "properties of a measured curve: moduli, yield, strength, hysteresis, relaxation",
+    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation [--out DIR]",
+    "properties of a measured curve: moduli, yield, strength, hysteresis, creep, relaxation",
     "sinew analyze data/cardiac-muscle/ramp-1s.csv --test relaxation", run};

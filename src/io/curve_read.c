@@ -45,6 +45,7 @@ static const column_kind column_kinds[] = {
     {"frequency", "Hz", false, {"freq", "omega"}},
     {"storage_modulus", "Pa", false, {"g'", "e'", "e_stor", "storage"}},
     {"loss_modulus", "Pa", false, {"g''", "e''", "e_loss", "loss"}},
+    {"hysteresis", "1", false, {"h", "energy_loss"}},
 };
 enum { KIND_COUNT = sizeof column_kinds / sizeof column_kinds[0] };
 

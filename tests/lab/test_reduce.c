@@ -270,6 +270,100 @@ static void relaxation_is_measured_from_the_peak(void **state) {
     sn_curve_release(&curve);
 }
 
+//---- creep ---------------------------------------------------------------------------------------
+
+enum { CREEP_ROWS = 400 };
+
+// Kelvin creep with flow under a held stress: strain = s (J1 (1 - exp(-t/tau)) + J0 + rate t), t
+// from the end of the ramp; then it is unloaded, breaks, or ends.
+typedef enum creep_end { ENDS, UNLOADED, BREAKS } creep_end;
+static void creep_rows(creep_end end, double s, double *time, double *stretch, double *stress) {
+    const double ramp = 0.5, hold = 60.0, J0 = 1.1e-5, J1 = 0.7e-5, tau = 4.0, flow = 2.3e-8;
+    for (int i = 0; i < CREEP_ROWS; ++i) {
+        double t = time[i] = 0.21 * i, under = fmax(0.0, t - ramp);
+        double strain = s * (J0 * fmin(1.0, t / ramp) - J1 * expm1(-under / tau) + flow * under);
+        stress[i] = s * fmin(1.0, t / ramp);
+        if (t > ramp + hold && end != ENDS) {
+            double after = t - ramp - hold;
+            stress[i] = end == BREAKS ? 0.01 * s : s * fmax(0.0, 1.0 - after / ramp);
+            if (end == BREAKS) strain *= 1.4;
+            if (end == UNLOADED)
+                strain =
+                    s * (flow * hold + J0 * fmax(0.0, 1.0 - after / ramp) + J1 * exp(-after / tau));
+        }
+        stretch[i] = 1.003 + strain; // a preload: counted from the first row
+        stress[i] += 17.0;
+    }
+}
+
+static void creep_has_its_properties(void **state) {
+    (void)state;
+    double time[CREEP_ROWS], stretch[CREEP_ROWS], stress[CREEP_ROWS];
+    for (int k = 0; k < 6; ++k) {
+        creep_end end = (creep_end)(k % 3);
+        double s = k < 3 ? 3.1e3 : -2.7e3;
+        creep_rows(end, s, time, stretch, stress);
+        sn_curve curve = oracle_curve("creep", CREEP_ROWS, time, stretch, stress);
+        sn_creep_result r;
+        CHECK_OK(sn_reduce_creep(&curve, &r));
+        double until = end == ENDS ? 0.21 * (CREEP_ROWS - 1) - 0.5 : 60.0;
+        CHECK_REL(r.stress, s, 1e-12);
+        CHECK_ABS(r.ramp_s, 0.5, 0.21); // a row
+        CHECK_ABS(r.hold_s, until, 2 * 0.21);
+        CHECK_REL(r.initial_compliance, 1.1e-5, 0.04); // a row of retardation
+        double J = 1.1e-5 - 0.7e-5 * expm1(-until / 4.0) + 2.3e-8 * until;
+        CHECK_REL(r.compliance, J, 2e-3); // a row of flow
+        // the last quarter has the flow and what is left of the retardation, exp(-45/4)
+        CHECK_REL(r.creep_rate, s * 2.3e-8, 2e-3);
+        assert_true(isfinite(r.time_to_rupture) == (end == BREAKS));
+        assert_true(isfinite(r.recovered_fraction) == (end == UNLOADED));
+        if (end == BREAKS) CHECK_ABS(r.time_to_rupture, 60.0, 2 * 0.21);
+        // after 23 s the retardation has gone but for exp(-23/4) of it
+        if (end == UNLOADED) CHECK_REL(r.recovered_fraction, 1.0 - 2.3e-8 * 60.0 / J, 3e-3);
+        sn_curve_release(&curve);
+    }
+}
+
+static void creep_survives_noise(void **state) {
+    (void)state;
+    double time[CREEP_ROWS], stretch[CREEP_ROWS], stress[CREEP_ROWS];
+    uint64_t seed = 8;
+    creep_rows(UNLOADED, 3.1e3, time, stretch, stress);
+    for (int i = 0; i < CREEP_ROWS; ++i) {
+        stretch[i] += 1e-4 * oracle_normal(&seed); // 0.2 % of the strain
+        stress[i] += 15.0 * oracle_normal(&seed);  // 0.5 % of the stress
+    }
+    sn_curve curve = oracle_curve("creep", CREEP_ROWS, time, stretch, stress);
+    sn_creep_result r;
+    CHECK_OK(sn_reduce_creep(&curve, &r));
+    CHECK_REL(r.stress, 3.1e3, 0.02);
+    CHECK_REL(r.compliance, 1.1e-5 + 0.7e-5 + 2.3e-8 * 60.0, 0.02);
+    CHECK_REL(r.creep_rate, 3.1e3 * 2.3e-8, 0.1); // 71 rows of 1e-4 over 15 s: 3e-6 1/s in 7e-5
+    CHECK_REL(r.recovered_fraction, 1.0 - 2.3e-8 * 60.0 / 1.94e-5, 0.02);
+    sn_curve_release(&curve);
+}
+
+static void creep_refusals(void **state) {
+    (void)state;
+    double time[CREEP_ROWS], stretch[CREEP_ROWS], stress[CREEP_ROWS];
+    sn_creep_result r;
+    creep_rows(ENDS, 3.1e3, time, stretch, stress);
+    sn_curve curve = oracle_curve("creep.csv", CREEP_ROWS, NULL, stretch, stress);
+    CHECK_FAILS(sn_reduce_creep(&curve, &r), SN_E_DATA, "no time column");
+    sn_curve_release(&curve);
+    curve = oracle_curve("creep.csv", CREEP_ROWS, time, stretch, stress);
+    curve.stress[200] *= 0.7;
+    CHECK_FAILS(sn_reduce_creep(&curve, &r), SN_E_DATA, "creep.csv: row 201: stress");
+    for (int i = 0; i < CREEP_ROWS; ++i) curve.stress[i] = 5.0;
+    CHECK_FAILS(sn_reduce_creep(&curve, &r), SN_E_DATA, "needs a load");
+    for (int i = 0; i < CREEP_ROWS; ++i) curve.stress[i] = 9.0 * i;
+    CHECK_FAILS(sn_reduce_creep(&curve, &r), SN_E_DATA, "creep.csv: row");
+    sn_curve_release(&curve);
+    curve = oracle_curve("creep.csv", 6, time, stretch, stress);
+    CHECK_FAILS(sn_reduce_creep(&curve, &r), SN_E_DATA, "needs a hold of at least 5 rows");
+    sn_curve_release(&curve);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_column_becomes_stretch_and_nominal_stress),
@@ -280,6 +374,9 @@ int main(void) {
         cmocka_unit_test(unusable_pulls_are_refused),
         cmocka_unit_test(cycles_are_split_and_the_last_part_left_out),
         cmocka_unit_test(relaxation_is_measured_from_the_peak),
+        cmocka_unit_test(creep_has_its_properties),
+        cmocka_unit_test(creep_survives_noise),
+        cmocka_unit_test(creep_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -30,51 +30,61 @@ static sn_status check_times(int n, const double *time) {
     return SN_OK;
 }
 
-static sn_status lay_stretch(sn_path *path, const sn_history *stretch) {
-    double low = 1.0, high = 1.0;
+static void lay_motion(sn_path *path, const sn_history *motion, double rest) {
+    double low = rest, high = rest;
     for (int i = 0; i < path->count; ++i) {
-        sn_history_at(stretch, path->time[i], &path->stretch[i]);
+        sn_history_at(motion, path->time[i], &path->stretch[i]);
         low = fmin(low, path->stretch[i]);
         high = fmax(high, path->stretch[i]);
-        if (!(path->stretch[i] > 0.0))
-            return sn_fail(SN_E_RANGE, "stretch at %g s is %g: expected more than 0", path->time[i],
-                           path->stretch[i]);
     }
     path->range = high - low;
-    return SN_OK;
 }
 
-sn_status sn_path_create(const sn_history *stretch, int n, const double *time, sn_path **path) {
-    SN_ASSERT(stretch && stretch->channels == 1 && n > 0 && time && path);
+sn_status sn_path_lay(const sn_history *motion, double rest, int n, const double *time,
+                      sn_path **path) {
+    SN_ASSERT(motion && motion->channels == 1 && n > 0 && time && path);
     *path = NULL;
     SN_TRY(check_times(n, time));
-    double start = stretch->time[0], end = start;
+    double start = motion->time[0], end = start;
     for (int i = 0; i < n; ++i) end = fmax(end, time[i]);
 
     sn_status status = SN_E_MEMORY;
     sn_path *p = sn_alloc(1, sizeof *p);
     if (!p) return status;
-    p->time = sn_alloc((size_t)(n + stretch->count), sizeof *p->time);
-    p->stretch = sn_alloc((size_t)(n + stretch->count), sizeof *p->stretch);
+    p->time = sn_alloc((size_t)(n + motion->count), sizeof *p->time);
+    p->stretch = sn_alloc((size_t)(n + motion->count), sizeof *p->stretch);
     p->record = sn_alloc((size_t)n, sizeof *p->record);
     if (!p->time || !p->stretch || !p->record) goto fail;
 
     int count = 0;
-    for (int i = 0; i < stretch->count; ++i)
-        if (stretch->time[i] <= end) p->time[count++] = stretch->time[i];
+    for (int i = 0; i < motion->count; ++i)
+        if (motion->time[i] <= end) p->time[count++] = motion->time[i];
     for (int i = 0; i < n; ++i)
         if (time[i] > start) p->time[count++] = time[i];
     qsort(p->time, (size_t)count, sizeof *p->time, by_value);
     for (int i = 0; i < count; ++i)
         if (p->count == 0 || p->time[i] > p->time[p->count - 1]) p->time[p->count++] = p->time[i];
 
-    SN_TRY_GOTO(status, lay_stretch(p, stretch));
+    lay_motion(p, motion, rest);
     p->records = n;
     for (int i = 0; i < n; ++i) p->record[i] = time[i] < start ? -1 : instant_of(p, time[i]);
     *path = p;
     return SN_OK;
 fail:
     sn_path_destroy(p);
+    return status;
+}
+
+sn_status sn_path_create(const sn_history *stretch, int n, const double *time, sn_path **path) {
+    SN_TRY(sn_path_lay(stretch, 1.0, n, time, path));
+    sn_status status = SN_OK;
+    for (int i = 0; i < (*path)->count && status == SN_OK; ++i)
+        if (!((*path)->stretch[i] > 0.0))
+            status = sn_fail(SN_E_RANGE, "stretch at %g s is %g: expected more than 0",
+                             (*path)->time[i], (*path)->stretch[i]);
+    if (status == SN_OK) return status;
+    sn_path_destroy(*path);
+    *path = NULL;
     return status;
 }
 

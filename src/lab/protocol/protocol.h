@@ -1,0 +1,25 @@
+// What the protocols share inside the laboratory.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sinew/lab.h"
+
+/// Holds all parameters of a protocol against its table. @return SN_OK or SN_E_RANGE.
+sn_status sn_protocol_check(const sn_protocol *protocol);
+/// Checks a protocol with `from` and `to` and gives the values of its sweep, evenly spaced in the
+/// logarithm, both ends included, in *value (sn_alloc'd, protocol->points of them).
+/// @return SN_OK, SN_E_RANGE, SN_E_MEMORY.
+sn_status sn_protocol_sweep(const sn_protocol *protocol, double **value);
+
+/// Rows of a ramp and hold: a third over the ramp, the others spaced by the logarithm of the time
+/// since its end, from a twentieth of the ramp or a hundredth of the hold, whichever is shorter.
+/// @param time  seconds from the start of the ramp, points >= 3           (points)
+void sn_protocol_hold_times(int points, double ramp, double hold, double *time);
+
+/// The tests behind sn_lab_test() that are no plain uniaxial motion. They append their columns and
+/// rows to an empty record.
+sn_status sn_test_hysteresis(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
+sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
+sn_status sn_test_creep(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
+/// Biaxial and shear.
+sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
