@@ -23,20 +23,6 @@ static const bench_plan plans[] = {
 
 #define PLANS ((int)(sizeof plans / sizeof plans[0]))
 
-static void machine_name(char *text, size_t size) {
-    snprintf(text, size, "unknown processor");
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    char line[512];
-    while (file && fgets(line, sizeof line, file)) {
-        char *colon = strchr(line, ':');
-        if (strncmp(line, "model name", 10) != 0 || !colon) continue;
-        colon[strcspn(colon, "\n")] = 0;
-        snprintf(text, size, "%s", colon + 2);
-        break;
-    }
-    if (file) fclose(file);
-}
-
 static json_t *row_json(const sn_springs_bench_row *r) {
     json_t *json = json_object();
     cli_put_text(json, "model", r->model);
@@ -64,17 +50,10 @@ static void print_row(const sn_springs_bench_row *r) {
     fflush(stdout);
 }
 
-static int run(const cli_command *command, int argc, char **argv) {
-    cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, NULL, 0, &arguments);
-    if (code >= 0) return code;
-    static const char *const subjects[] = {"springs"};
-    if (arguments.count > 1) return cli_refuse("bench: expected one subject: springs");
-    if (arguments.count == 1 && strcmp(arguments.item[0], "springs") != 0)
-        return cli_unknown("benchmark", arguments.item[0], subjects, 1);
+static int bench_springs(const cli_arguments *arguments) {
+    bool table = !arguments->json && !arguments->quiet;
     char machine[256];
-    machine_name(machine, sizeof machine);
-    bool table = !arguments.json && !arguments.quiet;
+    cli_machine(machine, sizeof machine);
     if (table)
         printf("%s, one thread, kernels %s\n%-16s %6s %8s %8s %6s  %-7s %21s %11s  of it\n",
                machine, sn_isa_name(), "model", "nodes", "springs", "cells", "terms", "real",
@@ -95,13 +74,26 @@ static int run(const cli_command *command, int argc, char **argv) {
     cli_put(json, "results", results);
     cli_put_text(json, "machine", machine);
     cli_put_text(json, "kernels", sn_isa_name());
-    if (arguments.json)
+    if (arguments->json)
         cli_print_json(json);
     else
         json_decref(json);
     return CLI_DONE;
 }
 
-const cli_command cli_bench = {"bench", "[springs]",
-                               "springs and cells per second, against the memory's bandwidth",
+static int run(const cli_command *command, int argc, char **argv) {
+    static const char *const subjects[] = {"springs", "fit"};
+    static int (*const functions[])(const cli_arguments *) = {bench_springs, cli_bench_fit};
+    cli_arguments arguments;
+    int code = cli_parse(command, argc, argv, NULL, 0, &arguments);
+    if (code >= 0) return code;
+    if (arguments.count > 1) return cli_refuse("bench: expected one subject: springs or fit");
+    if (arguments.count == 0) return bench_springs(&arguments);
+    for (int k = 0; k < 2; k++)
+        if (strcmp(arguments.item[0], subjects[k]) == 0) return functions[k](&arguments);
+    return cli_unknown("benchmark", arguments.item[0], subjects, 2);
+}
+
+const cli_command cli_bench = {"bench", "[springs|fit]",
+                               "how fast it runs here, against the memory's bandwidth",
                                "sinew bench springs", run};

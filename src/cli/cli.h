@@ -59,6 +59,9 @@ int cli_fail(sn_status status);
 /// Refuses a word that is not in a list, with a suggestion. @return CLI_BAD_INPUT
 int cli_unknown(const char *what, const char *word, const char *const *names, int count);
 
+/// sinew bench fit (bench_fit.c).
+int cli_bench_fit(const cli_arguments *arguments);
+
 //---- progress ------------------------------------------------------------------------------------
 
 /// A bar on a terminal, plain lines otherwise, from the second second on.
@@ -95,3 +98,5 @@ const char *cli_basename(const char *path);
 /// A value with a readable unit: "12.3 kPa", "45 ms", "—" where it is not finite. Uses one of eight
 /// static buffers in turn.
 const char *cli_show(double value, const char *si_unit);
+/// The processor's name, for benchmarks.
+void cli_machine(char *text, size_t size);

@@ -146,3 +146,17 @@ const char *cli_show(double value, const char *si_unit) {
         snprintf(text, sizeof buffers[0], "%.4g %s", value / best->factor, best->shown);
     return text;
 }
+
+void cli_machine(char *text, size_t size) {
+    snprintf(text, size, "unknown processor");
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    char line[512];
+    while (file && fgets(line, sizeof line, file)) {
+        char *colon = strchr(line, ':');
+        if (strncmp(line, "model name", 10) != 0 || !colon) continue;
+        colon[strcspn(colon, "\n")] = 0;
+        snprintf(text, size, "%s", colon + 2);
+        break;
+    }
+    if (file) fclose(file);
+}

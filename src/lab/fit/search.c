@@ -17,6 +17,8 @@
 #include <nlopt.h>
 
 enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 400 };
+// rows on which the search for a start is done, in all and at least of every curve
+enum { START_ROWS = 200, START_LEAST = 30 };
 static const double apart = 0.1;       // of the unit cube, largest difference of a coordinate
 static const double near_bound = 0.02; // part of the range
 static const double epsfcn = 1e-10;    // square of the relative step of the differences
@@ -195,7 +197,72 @@ static sn_status refine(cube *c, sn_found *best) {
             def->progress(def->progress_context, 0.3 + 0.4 * (i + 1) / c->kept_count,
                           "local search");
     }
-    return finish(c, best);
+    return SN_OK;
+}
+
+//---- long records --------------------------------------------------------------------------------
+
+// every step-th row of a curve, and its last
+static sn_status thin_curve(const sn_curve *curve, int step, sn_curve *out) {
+    size_t most = (size_t)(curve->count / step + 2);
+    *out = *curve;
+    out->count = 0;
+    out->time = curve->time ? sn_alloc(most, sizeof *out->time) : NULL;
+    out->stretch = sn_alloc(most, sizeof *out->stretch);
+    out->stress = sn_alloc(most, sizeof *out->stress);
+    if ((curve->time && !out->time) || !out->stretch || !out->stress) return SN_E_MEMORY;
+    for (int i = 0; i < curve->count; ++i) {
+        if (i % step != 0 && i != curve->count - 1) continue;
+        if (curve->time) out->time[out->count] = curve->time[i];
+        out->stretch[out->count] = curve->stretch[i];
+        out->stress[out->count] = curve->stress[i];
+        out->count++;
+    }
+    return SN_OK;
+}
+
+// Where to start on long records is found on a part of their rows, within the bounds of the whole:
+// thousands of trials want the shape of the curves, not every row.
+static sn_status search_part(sn_problem *whole, sn_found *best) {
+    sn_problem *part = NULL;
+    sn_fit_def def = *whole->def;
+    sn_curve *thin = sn_alloc((size_t)def.curve_count, sizeof *thin);
+    if (!thin) return SN_E_MEMORY;
+    def.curve = thin;
+    sn_status status = SN_OK;
+    int step = whole->points / START_ROWS;
+    for (int k = 0; k < def.curve_count && status == SN_OK; ++k) {
+        const sn_curve *curve = &whole->def->curve[k];
+        // a short curve among long ones keeps a few dozen rows
+        int own = curve->count / START_LEAST;
+        status = thin_curve(curve, own < 1 ? 1 : own < step ? own : step, &thin[k]);
+    }
+    if (status == SN_OK) status = sn_problem_create(&def, &part);
+    if (status == SN_OK) {
+        for (int k = 0; k < part->count; ++k) {
+            part->constant[k].low = whole->constant[k].low;
+            part->constant[k].high = whole->constant[k].high;
+        }
+        status = sn_search(part, best);
+        whole->evaluations += part->evaluations;
+    }
+    sn_problem_destroy(part);
+    for (int k = 0; k < def.curve_count; ++k) sn_curve_release(&thin[k]);
+    sn_free(thin);
+    return status;
+}
+
+static sn_status find_start(cube *c, sn_found *best) {
+    sn_problem *p = c->problem;
+    int most = 2 * (START_ROWS + START_LEAST * p->def->curve_count); // the part is below this
+    if (p->points <= most) {
+        SN_TRY(global(c));
+        return refine(c, best);
+    }
+    SN_TRY(search_part(p, best));
+    sn_problem_residuals(p, best->x, c->residual);
+    best->sum = sn_sum_squares(p->points, c->residual);
+    return SN_OK;
 }
 
 sn_status sn_search(sn_problem *problem, sn_found *best) {
@@ -214,8 +281,8 @@ sn_status sn_search(sn_problem *problem, sn_found *best) {
         goto fail;
     }
     if (def->progress) def->progress(def->progress_context, 0.0, "global search");
-    SN_TRY_GOTO(status, global(c));
-    SN_TRY_GOTO(status, refine(c, best));
+    SN_TRY_GOTO(status, find_start(c, best));
+    SN_TRY_GOTO(status, finish(c, best));
     if (best->sum >= problem->norm * 1e5)
         status = sn_fail(SN_E_SOLVER, "fit: no constants within the bounds give a usable stress");
 fail:
