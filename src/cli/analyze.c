@@ -23,6 +23,35 @@ static void say(analysis *a, const char *what, const char *value, const char *re
     printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
 }
 
+/// One line of a result: on standard output and in the table of the page.
+typedef struct finding {
+    const char *what, *value;
+    const char *remark; ///< Nullable
+} finding;
+
+#define FINDINGS_MAX 12
+
+static void present(analysis *a, const char *caption, int count, const finding *f) {
+    const char *cells[(FINDINGS_MAX + 1) * 3];
+    int n = 0, columns = 2;
+    SN_ASSERT(count <= FINDINGS_MAX);
+    for (int i = 0; i < count; i++) {
+        say(a, f[i].what, f[i].value, f[i].remark ? f[i].remark : "");
+        if (f[i].remark && *f[i].remark) columns = 3;
+    }
+    if (!a->report) return;
+    cells[n++] = "property", cells[n++] = "value";
+    if (columns == 3) cells[n++] = "remark";
+    for (int i = 0; i < count; i++) {
+        cells[n++] = f[i].what, cells[n++] = f[i].value;
+        if (columns == 3) cells[n++] = f[i].remark ? f[i].remark : "";
+    }
+    sn_report_table(a->report, count + 1, columns, cells, caption);
+}
+
+#define PRESENT(a, caption, findings)                                                              \
+    present(a, caption, (int)(sizeof(findings) / sizeof(findings)[0]), findings)
+
 static void stress_plot(sn_report *report, const char *title, int lines, const sn_line *line) {
     sn_report_plot(report, &(sn_plot){.title = title,
                                       .x_label = "stretch [1]",
@@ -57,37 +86,22 @@ static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
     sn_tensile r;
     SN_TRY(sn_reduce_tensile(curve, &r));
     a->json = tensile_json(&r);
-    say(a, "Young's modulus", cli_show(r.youngs_modulus, "Pa"), r.modulus_method);
-    say(a, "toe modulus", cli_show(r.toe_modulus, "Pa"), "");
-    say(a, "largest slope", cli_show(r.max_slope_modulus, "Pa"), "");
-    say(a, "yield stress, 0.2 % offset", cli_show(r.yield_stress, "Pa"), r.reason);
-    say(a, "ultimate tensile strength", cli_show(r.ultimate_tensile_strength, "Pa"), "");
-    say(a, "strain at ultimate", cli_show(r.strain_at_ultimate, "1"), "");
-    char work[64];
+    char work[64], slope[128], squared[64];
     snprintf(work, sizeof work, "%.4g J/m3", r.work_to_failure);
-    say(a, "work to failure", work, "");
-    char slope[128];
     snprintf(slope, sizeof slope, "B = %.4g, C = %s", r.B, cli_show(r.C, "Pa"));
-    char squared[64];
     snprintf(squared, sizeof squared, "R2 of the line %.4f", r.slope_r_squared);
-    say(a, "slope against stress (13)", slope, squared);
+    const finding found[] = {
+        {"Young's modulus", cli_show(r.youngs_modulus, "Pa"), r.modulus_method},
+        {"toe modulus", cli_show(r.toe_modulus, "Pa"), NULL},
+        {"largest slope", cli_show(r.max_slope_modulus, "Pa"), NULL},
+        {"yield stress, 0.2 % offset", cli_show(r.yield_stress, "Pa"), r.reason},
+        {"ultimate tensile strength", cli_show(r.ultimate_tensile_strength, "Pa"), NULL},
+        {"strain at ultimate", cli_show(r.strain_at_ultimate, "1"), NULL},
+        {"work to failure", work, NULL},
+        {"slope against stress (13)", slope, squared},
+    };
+    PRESENT(a, "Tension", found);
     if (!a->report) return SN_OK;
-    const char *cells[] = {"property",
-                           "value",
-                           "Young's modulus",
-                           cli_show(r.youngs_modulus, "Pa"),
-                           "toe modulus",
-                           cli_show(r.toe_modulus, "Pa"),
-                           "yield stress",
-                           cli_show(r.yield_stress, "Pa"),
-                           "ultimate tensile strength",
-                           cli_show(r.ultimate_tensile_strength, "Pa"),
-                           "work to failure",
-                           work,
-                           "slope against stress (13)",
-                           slope};
-    sn_report_table(a->report, 8, 2, cells, r.modulus_method);
-    if (*r.reason) sn_report_text(a->report, "No yield stress: %s", r.reason);
     int n = r.window_last - r.window_first + 1;
     sn_line lines[] = {{"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
                        {"window of the modulus", SN_LINE, 1, n, curve->stretch + r.window_first,
@@ -146,26 +160,18 @@ static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
     cli_put_number(a->json, "rate_per_decade", r.rate_per_decade);
     cli_put_number(a->json, "ramp_s", r.ramp_s);
     cli_put_number(a->json, "final_stress_Pa", r.final_stress);
-    say(a, "ramp", cli_show(r.ramp_s, "s"), "");
-    say(a, "peak stress", cli_show(r.peak_stress, "Pa"), "");
-    say(a, "final stress", cli_show(r.final_stress, "Pa"), "");
-    char percent[32];
-    snprintf(percent, sizeof percent, "%.1f %%", 100 * r.relaxed_fraction);
-    say(a, "relaxed fraction", percent, "of the peak");
-    snprintf(percent, sizeof percent, "%.1f %%", 100 * r.rate_per_decade);
-    say(a, "relaxation per decade of time", percent, "of the peak");
+    char fraction[32], rate[32];
+    snprintf(fraction, sizeof fraction, "%.1f %%", 100 * r.relaxed_fraction);
+    snprintf(rate, sizeof rate, "%.1f %%", 100 * r.rate_per_decade);
+    const finding found[] = {
+        {"ramp", cli_show(r.ramp_s, "s"), NULL},
+        {"peak stress", cli_show(r.peak_stress, "Pa"), NULL},
+        {"final stress", cli_show(r.final_stress, "Pa"), NULL},
+        {"relaxed fraction", fraction, "of the peak"},
+        {"relaxation per decade of time", rate, "of the peak"},
+    };
+    PRESENT(a, "Relaxation", found);
     if (!a->report) return SN_OK;
-    const char *cells[] = {"property",
-                           "value",
-                           "ramp",
-                           cli_show(r.ramp_s, "s"),
-                           "peak stress",
-                           cli_show(r.peak_stress, "Pa"),
-                           "final stress",
-                           cli_show(r.final_stress, "Pa"),
-                           "relaxation per decade (of the peak)",
-                           percent};
-    sn_report_table(a->report, 5, 2, cells, "Relaxation");
     sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stress};
     sn_report_plot(a->report, &(sn_plot){.title = "Stress over time",
                                          .x_label = "time [s]",
@@ -216,28 +222,18 @@ static sn_status analyze_creep(const sn_curve *curve, analysis *a) {
     snprintf(rate, sizeof rate, "%.4g 1/s", r.creep_rate);
     if (isfinite(r.recovered_fraction))
         snprintf(recovered, sizeof recovered, "%.1f %%", 100 * r.recovered_fraction);
-    const char *cells[] = {"property",
-                           "value",
-                           "held stress",
-                           cli_show(r.stress, "Pa"),
-                           "loading",
-                           cli_show(r.ramp_s, "s"),
-                           "hold",
-                           cli_show(r.hold_s, "s"),
-                           "compliance, start of the hold",
-                           initial,
-                           "compliance, end of the hold",
-                           compliance,
-                           "creep rate, smallest",
-                           rate,
-                           "time to rupture",
-                           cli_show(r.time_to_rupture, "s"),
-                           "recovered, of the strain",
-                           recovered};
-    enum { ROWS = sizeof cells / sizeof cells[0] / 2 };
-    for (int i = 1; i < ROWS; i++) say(a, cells[2 * i], cells[2 * i + 1], "");
+    const finding found[] = {
+        {"held stress", cli_show(r.stress, "Pa"), NULL},
+        {"loading", cli_show(r.ramp_s, "s"), NULL},
+        {"hold", cli_show(r.hold_s, "s"), NULL},
+        {"compliance, start of the hold", initial, NULL},
+        {"compliance, end of the hold", compliance, NULL},
+        {"creep rate, smallest", rate, NULL},
+        {"time to rupture", cli_show(r.time_to_rupture, "s"), NULL},
+        {"recovered, of the strain", recovered, NULL},
+    };
+    PRESENT(a, "Creep", found);
     if (!a->report) return SN_OK;
-    sn_report_table(a->report, ROWS, 2, cells, "Creep");
     creep_plot(curve, a->report);
     return SN_OK;
 }

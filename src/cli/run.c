@@ -127,7 +127,7 @@ static void summary_table(sn_report *report, const sn_run_summary *s) {
                            cli_show(s->elastic_J, "J"),
                            "external work",
                            cli_show(s->external_work_J, "J")};
-    sn_report_table(report, 9, 2, cells, "Summary");
+    sn_report_table(report, (int)(sizeof cells / sizeof cells[0]) / 2, 2, cells, "Summary");
 }
 
 static sn_status write_report(const char *path, const sn_case *c, const sn_run_summary *s,

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The matrix lies in our own compressed rows; PETSc reads them in place. The symbolic factorisation
-// is made once and used for all of a run. One rank for now: everything lives on PETSC_COMM_SELF.
+// is made once and used for all of a run. One rank: everything lives on PETSC_COMM_SELF.
 #pragma once
 
 #include "continuum/pattern.h"
