@@ -6,7 +6,8 @@
 
 // what a haptic program does a thousand times a second: set the tool, step, read the force
 static void frame(const sn_net *net, sn_state *state, const double tool[3], double force[3]) {
-    sn_state_set_tool(net, state, 0, tool);
+    const sn_pose pose = sn_pose_at(tool);
+    sn_state_set_tool(net, state, 0, &pose);
     for (double left = 1e-3; left > 1e-9;) left -= sn_state_step(net, state, left).step;
     sn_state_tool_force(net, state, 0, force);
 }

@@ -48,6 +48,12 @@ SN_API sn_status sn_case_read(const char *path, sn_case **c);
 ///         SN_E_MESH, SN_E_RANGE (scale), SN_E_MEMORY.
 SN_API sn_status sn_mesh_read_gmsh(const char *path, double scale, sn_mesh **mesh);
 
+/// Reads a closed surface of triangles for a tool from an STL file, text or binary. `scale` brings
+/// its coordinates to metres.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_MESH, SN_E_DATA (too large), SN_E_MEMORY.
+SN_API sn_status sn_tool_surface_read_stl(const char *path, double scale,
+                                          sn_tool_surface **surface);
+
 //---- fields --------------------------------------------------------------------------------------
 
 /// A ParaView collection: one .vtu a frame and a .pvd that is complete after every frame.

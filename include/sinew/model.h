@@ -84,6 +84,8 @@ SN_API sn_status sn_mesh_surface_nodes(const sn_mesh *mesh, int surface, int **n
 SN_API sn_status sn_mesh_edges(const sn_mesh *mesh, int **edges, int *count);
 /// Signed volume of a cell, m3.
 SN_API double sn_mesh_cell_volume(const sn_mesh *mesh, int cell);
+/// Area of a surface at rest, m2.
+SN_API double sn_mesh_area(const sn_mesh *mesh, int surface);
 /// Volume of the body, m3.
 SN_API double sn_mesh_volume(const sn_mesh *mesh);
 
@@ -97,29 +99,51 @@ typedef struct sn_support {
 typedef enum sn_load_kind {
     SN_LOAD_DISPLACEMENT, ///< prescribed motion of the nodes of a surface
     SN_LOAD_TRACTION,     ///< force over original area, fixed direction
-    SN_LOAD_PRESSURE      ///< follower pressure on the deformed surface, positive pushes inwards
+    SN_LOAD_PRESSURE,     ///< follower pressure on the deformed surface, positive pushes inwards
+    SN_LOAD_FORCE         ///< force at a material point, fixed direction
 } sn_load_kind;
 
 typedef struct sn_load {
     sn_load_kind kind;
-    int surface;
-    double vector[3];   ///< displacement [m] or traction [Pa]
+    int surface;        ///< not of a force
+    double point[3];    ///< force: where it acts at rest, m
+    double vector[3];   ///< displacement [m], traction [Pa] or force [N]
     bool free[3];       ///< displacement: this component is not prescribed
     double pressure;    ///< Pa
     sn_history *factor; ///< Nullable (constant 1), owned; one channel
 } sn_load;
 
-typedef enum sn_tool_kind { SN_TOOL_SPHERE } sn_tool_kind;
+typedef enum sn_tool_kind {
+    SN_TOOL_SPHERE,
+    SN_TOOL_CAPSULE, ///< all points within a radius of a straight axis
+    SN_TOOL_PLANE,   ///< a half space
+    SN_TOOL_MESH     ///< the inside of a closed surface of triangles
+} sn_tool_kind;
 
-/// A rigid body that moves as told and pushes the tissue.
+/// A closed surface of triangles with a tree of boxes to find its nearest point.
+typedef struct sn_tool_surface sn_tool_surface;
+
+/// A rigid body that moves as told and pushes the tissue. Its shape is given in its own axes, with
+/// the origin at its centre.
 typedef struct sn_tool {
     char name[SN_NAME_MAX];
     sn_tool_kind kind;
-    double radius;    ///< m
-    double at[3];     ///< centre at rest, m
+    double radius;  ///< sphere and capsule, m
+    double axis[3]; ///< capsule: from the centre of one end to that of the other, m; plane: its
+                    ///< outward normal, any length
+    sn_tool_surface *surface; ///< mesh, owned
+    double at[3]; ///< centre at rest, m: of the sphere, of the capsule's first end, a point of the
+                  ///< plane, the origin of the mesh
     sn_history *path; ///< Nullable, owned; displacement of the centre, three channels, m
+    sn_history *turn; ///< Nullable, owned; rotation vector about the centre, three channels, rad
     double friction;  ///< Coulomb coefficient
 } sn_tool;
+
+/// Where a rigid body is: a point x of its own axes stands at centre + turn x.
+typedef struct sn_pose {
+    double centre[3]; ///< m
+    double turn[9];   ///< rotation, row-major 3 x 3
+} sn_pose;
 
 typedef enum sn_probe_kind { SN_PROBE_POINT, SN_PROBE_REACTION } sn_probe_kind;
 typedef struct sn_probe {
@@ -223,26 +247,50 @@ SN_API void sn_case_axes(const sn_case *c, double axes[9]);
 SN_API sn_status sn_mesh_locate(const sn_mesh *mesh, const double point[3], int *cell,
                                 double weight[4]);
 
+//---- tools ---------------------------------------------------------------------------------------
+
+/// A surface from triangles with outward normals by the right-hand rule, metres. Corners at equal
+/// places are one.
+/// @param corner  three corners of each triangle                    (triangles x 3 x 3)
+/// @return SN_OK, SN_E_MESH (not closed, inside out, no triangle with an area), SN_E_MEMORY.
+SN_API sn_status sn_tool_surface_create(int triangles, const double *corner,
+                                        sn_tool_surface **surface);
+SN_API void sn_tool_surface_destroy(sn_tool_surface *surface); // NULL is allowed
+/// A copy with its own path, turn and surface. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_tool_copy(const sn_tool *tool, sn_tool *copy);
+/// Frees what a tool owns.
+SN_API void sn_tool_release(sn_tool *tool);
+
+/// A pose without rotation.
+SN_API sn_pose sn_pose_at(const double centre[3]);
+/// The rotation about `vector` by its length in radians, row-major. Source: Rodrigues' formula.
+SN_API void sn_rotation(const double vector[3], double turn[9]);
+/// Where a tool is at time t, by its path and turn.
+SN_API void sn_tool_pose(const sn_tool *tool, double t, sn_pose *pose);
+/// How far the tool reaches from its centre, m; INFINITY for a plane.
+SN_API double sn_tool_reach(const sn_tool *tool);
+/// How deep a point is in the tool, m, negative outside. `normal` (Nullable) is the outward normal
+/// of the tool at the nearest point of its surface, in space; zero where there is no such
+/// direction.
+SN_API double sn_tool_depth(const sn_tool *tool, const sn_pose *pose, const double position[3],
+                            double normal[3]);
+
 //---- contact with tools --------------------------------------------------------------------------
 
-/// Memory of one contact point: where it sticks, relative to the tool's centre.
+/// Memory of one contact point: where it sticks, in the tool's axes.
 typedef struct sn_contact {
     bool touching;
     double anchor[3];
 } sn_contact;
 
-/// Centre of a tool at time t.
-SN_API void sn_tool_centre(const sn_tool *tool, double t, double centre[3]);
 /// Penalty contact of a surface point with a tool: normal force stiffness * depth outwards, and
 /// Coulomb friction by an elastic stick and a slip (return mapping). Both engines use it.
 /// @param stiffness  N/m: penalty per area times the area of the point
 /// @param before     memory at the start of the step; *after gets the memory at its end
 /// @param force      on the tissue, N
-/// @param tangent    -d force/d position, row-major 3 x 3, symmetric part of the friction term
-/// kept;
-///                   Nullable
+/// @param tangent    -d force/d position, row-major 3 x 3, unsymmetric with friction; Nullable
 /// @return true when the point touches.
-SN_API bool sn_tool_contact(const sn_tool *tool, const double centre[3], const double position[3],
+SN_API bool sn_tool_contact(const sn_tool *tool, const sn_pose *pose, const double position[3],
                             double stiffness, const sn_contact *before, sn_contact *after,
                             double force[3], double tangent[9]);
 /// Penalty per area, Pa/m, that both engines use for a case: keeps the depth small against the

@@ -34,8 +34,8 @@ SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
 SN_API void sn_state_destroy(sn_state *state); // NULL is allowed
 /// Back to rest.
 SN_API void sn_state_reset(const sn_net *net, sn_state *state);
-/// Overrides the path of a tool: its centre from the next step on, metres.
-SN_API void sn_state_set_tool(const sn_net *net, sn_state *state, int tool, const double centre[3]);
+/// Overrides the path of a tool: its pose from the next step on.
+SN_API void sn_state_set_tool(const sn_net *net, sn_state *state, int tool, const sn_pose *pose);
 
 /// What a step did.
 typedef struct sn_step_info {

@@ -29,3 +29,14 @@ static inline double distance3(const double a[3], const double b[3]) {
     sub3(a, b, d);
     return norm3(d);
 }
+
+/// out = A x, A row-major 3 x 3; out is not x.
+static inline void times3(const double A[9], const double x[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = A[3 * i] * x[0] + A[3 * i + 1] * x[1] + A[3 * i + 2] * x[2];
+}
+
+/// out = A^T x; out is not x.
+static inline void transpose_times3(const double A[9], const double x[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = A[i] * x[0] + A[3 + i] * x[1] + A[6 + i] * x[2];
+}

@@ -47,6 +47,22 @@ static sn_status make_traction(const sn_case *c, const sn_fe_space *s, int load,
     return f ? SN_OK : SN_E_MEMORY;
 }
 
+// A force at a material point, shared by the nodes of its cell as their shape functions are there.
+static sn_status make_force(const sn_case *c, const sn_fe_space *s, int load, sn_fe_boundary *b) {
+    int cell, nodes = s->element.nodes;
+    double weight[4], shape[SN_FE_NODES];
+    SN_TRY(sn_mesh_locate(c->mesh, c->load[load].point, &cell, weight));
+    double *f = b->traction[load] = sn_alloc(3 * (size_t)s->nodes, sizeof *f);
+    if (!f) return SN_E_MEMORY;
+    int place = sn_fe_space_place(s, cell), batch = place / s->batch_cells;
+    sn_fe_cell_shape(nodes, weight, shape);
+    for (int a = 0; a < nodes; a++) {
+        int node = s->node[(batch * nodes + a) * s->batch_cells + place % s->batch_cells];
+        for (int i = 0; i < 3; i++) f[3 * node + i] += shape[a] * c->load[load].vector[i];
+    }
+    return SN_OK;
+}
+
 // P1: one spot a node; P2: one a quadrature point of each face.
 static sn_status place_spots(const sn_fe_space *s, const sn_fe_faces *faces, sn_fe_boundary *b) {
     const sn_fe_element *e = &s->element;
@@ -116,6 +132,7 @@ sn_status sn_fe_boundary_create(const sn_case *c, const sn_fe_space *s, sn_fe_bo
     SN_TRY_GOTO(status, make_gravity(c, s, b));
     for (int k = 0; k < c->load_count; k++) {
         if (c->load[k].kind == SN_LOAD_TRACTION) SN_TRY_GOTO(status, make_traction(c, s, k, b));
+        if (c->load[k].kind == SN_LOAD_FORCE) SN_TRY_GOTO(status, make_force(c, s, k, b));
         if (c->load[k].kind != SN_LOAD_PRESSURE) continue;
         b->symmetric = false;
         SN_TRY_GOTO(status, sn_fe_faces_of(s, c->mesh, c->load[k].surface, b->pressed + k));
@@ -178,27 +195,10 @@ static void press(const sn_fe_space *s, const sn_fe_faces *faces, double pressur
 
 //---- contact ------------------------------------------------------------------------------------
 
-// -d force / d position by central differences.
-static void difference_tangent(const sn_tool *tool, const double centre[3],
-                               const double position[3], double stiffness, const sn_contact *before,
-                               double tangent[9]) {
-    double step = 1e-6 * tool->radius;
-    for (int j = 0; j < 3; j++) {
-        double force[2][3];
-        for (int side = 0; side < 2; side++) {
-            double at[3] = {position[0], position[1], position[2]};
-            sn_contact after;
-            at[j] += side ? step : -step;
-            sn_tool_contact(tool, centre, at, stiffness, before, &after, force[side], NULL);
-        }
-        for (int i = 0; i < 3; i++) tangent[3 * i + j] = (force[0][i] - force[1][i]) / (2.0 * step);
-    }
-}
-
 static void touch(sn_fe_boundary *b, const sn_case *c, const sn_fe_space *s, int t, double time,
                   const double *x, double *external, const sn_fe_matrix *matrix) {
-    double centre[3];
-    sn_tool_centre(c->tool + t, time, centre);
+    sn_pose pose;
+    sn_tool_pose(c->tool + t, time, &pose);
     memset(b->tool_force[t], 0, sizeof b->tool_force[t]);
     for (int k = 0; k < b->spots; k++) {
         const sn_fe_spot *spot = b->spot + k;
@@ -208,7 +208,7 @@ static void touch(sn_fe_boundary *b, const sn_case *c, const sn_fe_space *s, int
                 position[i] +=
                     spot->shape[a] * (s->rest[3 * spot->node[a] + i] + x[3 * spot->node[a] + i]);
         size_t at = (size_t)t * (size_t)b->spots + (size_t)k;
-        if (!sn_tool_contact(c->tool + t, centre, position, b->penalty * spot->area, b->before + at,
+        if (!sn_tool_contact(c->tool + t, &pose, position, b->penalty * spot->area, b->before + at,
                              b->after + at, force, matrix ? tangent : NULL))
             continue;
         for (int i = 0; i < 3; i++) b->tool_force[t][i] -= force[i];
@@ -216,9 +216,6 @@ static void touch(sn_fe_boundary *b, const sn_case *c, const sn_fe_space *s, int
             for (int i = 0; i < 3; i++)
                 external[3 * spot->node[a] + i] += spot->shape[a] * force[i];
         if (!matrix) continue;
-        if (c->tool[t].friction > 0.0)
-            difference_tangent(c->tool + t, centre, position, b->penalty * spot->area,
-                               b->before + at, tangent);
         for (int a = 0; a < spot->count; a++)
             for (int d = 0; d < spot->count; d++) {
                 double block[9];

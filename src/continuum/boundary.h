@@ -7,10 +7,8 @@
 //     -df_a/dx_b = p int N_a (N_b,xi e x x,eta + x,xi x N_b,eta e) dxi deta,
 // an unsymmetric tangent. Tools touch the surface "boundary" at contact points with
 // sn_tool_contact(): for P1 the nodes with a third of their faces' areas (the rule of the springs),
-// for P2 the six points of the faces' quadrature rule. With friction the whole tangent of a
-// touching spot is needed, or Newton crawls where it slips: sn_tool_contact() keeps the symmetric
-// part only, so it is then taken by central differences of the force (1e-6 of the radius: rounding
-// and truncation near 1e-10).
+// for P2 the six points of the faces' quadrature rule. With friction the tangent is
+// unsymmetric; Newton needs it whole, or crawls where it slips.
 #pragma once
 
 #include "continuum/pattern.h"
@@ -25,7 +23,7 @@ typedef struct sn_fe_spot {
 
 typedef struct sn_fe_boundary {
     double *gravity;      ///< nodal forces, N; NULL without gravity    (3 x nodes)
-    double **traction;    ///< nodal forces at factor 1; NULL for other loads  (loads)
+    double **traction;    ///< nodal forces of tractions and forces at factor 1, else NULL  (loads)
     sn_fe_faces *pressed; ///< faces of pressure loads                  (loads)
     bool symmetric;       ///< the tangent: no pressure, no friction
     double penalty;       ///< Pa/m

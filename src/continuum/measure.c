@@ -147,14 +147,6 @@ sn_status sn_fe_measure_row(sn_fe_measure *m, const sn_fe_problem *p, const doub
     return sn_record_append(history, m->row);
 }
 
-static int place_of(const sn_fe_space *s, int cell) {
-    for (int b = 0; b < s->batches; b++)
-        for (int at = 0; at < s->batch_count[b]; at++)
-            if (s->slot[b * s->batch_cells + at] == cell) return b * s->batch_cells + at;
-    SN_ASSERT(false);
-    return 0;
-}
-
 static sn_status find_probes(const sn_fe_problem *p, sn_fe_measure *m) {
     const sn_case *c = p->c;
     for (int k = 0; k < c->probe_count; k++) {
@@ -167,7 +159,7 @@ static sn_status find_probes(const sn_fe_problem *p, sn_fe_measure *m) {
         int cell;
         sn_status status = sn_mesh_locate(c->mesh, probe->point, &cell, m->point_weight[k]);
         if (status != SN_OK) return sn_fail_within(status, "probe \"%s\"", probe->name);
-        m->point_cell[k] = place_of(p->space, cell);
+        m->point_cell[k] = sn_fe_space_place(p->space, cell);
     }
     return SN_OK;
 }

@@ -41,11 +41,13 @@ static double largest_slope(const sn_history *h) {
 }
 
 static int history_count(const sn_case *c) {
-    return c->load_count + c->tool_count;
+    return c->load_count + 2 * c->tool_count;
 }
 
 static const sn_history *history_of(const sn_case *c, int k) {
-    return k < c->load_count ? c->load[k].factor : c->tool[k - c->load_count].path;
+    if (k < c->load_count) return c->load[k].factor;
+    const sn_tool *tool = &c->tool[(k - c->load_count) / 2];
+    return (k - c->load_count) % 2 ? tool->turn : tool->path;
 }
 
 static void add_knots(const sn_case *c, sn_fe_schedule *s) {

@@ -255,3 +255,11 @@ fail:
     *space = NULL;
     return status;
 }
+
+int sn_fe_space_place(const sn_fe_space *s, int cell) {
+    for (int b = 0; b < s->batches; b++)
+        for (int at = 0; at < s->batch_count[b]; at++)
+            if (s->slot[b * s->batch_cells + at] == cell) return b * s->batch_cells + at;
+    SN_ASSERT(false);
+    return 0;
+}

@@ -63,3 +63,5 @@ sn_status sn_fe_surface_nodes(const sn_fe_space *s, const sn_mesh *mesh, int sur
 /// Prescribed displacements at time t; a midside takes the mean of its ends.
 /// @param value  at fixed directions, m; others untouched             (nodes x 3)
 void sn_fe_space_prescribed(const sn_fe_space *s, const sn_case *c, double t, double *value);
+/// The place (batch * cells + at) of a cell of the mesh.
+int sn_fe_space_place(const sn_fe_space *s, int cell);

@@ -7,8 +7,7 @@
 
 enum { NAMES_SHOWN = 64 };
 
-// A path that stands in a file, relative to the folder of that file. *joined is sn_alloc'd.
-static sn_status join_path(const sn_yaml *node, const char *name, char **joined) {
+sn_status sn_case_join_path(const sn_yaml *node, const char *name, char **joined) {
     const char *slash = strrchr(node->file, '/');
     size_t folder = slash && name[0] != '/' ? (size_t)(slash - node->file) + 1 : 0;
     char *path = sn_alloc(folder + strlen(name) + 1, 1);
@@ -98,23 +97,29 @@ static sn_status read_shape(const sn_yaml *mesh, const sn_yaml *shape, sn_case *
     return sn_yaml_within(shape, sn_mesh_build(def, &c->mesh));
 }
 
+sn_status sn_case_read_unit(const sn_yaml *map, double *factor) {
+    const sn_yaml *unit = sn_yaml_get(map, "unit");
+    const char *text;
+    double offset;
+    *factor = 1.0;
+    if (!unit) return SN_OK;
+    SN_TRY(sn_yaml_text(unit, "a unit of length such as mm", &text));
+    return sn_yaml_within(unit, sn_unit_to_si(text, "m", factor, &offset));
+}
+
 // {file: liver.msh, unit: mm}; without a unit the coordinates are metres.
 static sn_status read_file(const sn_yaml *mesh, const sn_yaml *file, sn_case *c) {
-    double factor = 1.0, offset;
+    double factor;
     const char *text;
-    const sn_yaml *unit = sn_yaml_get(mesh, "unit");
     const sn_yaml *pattern = sn_yaml_get(mesh, "pattern");
     if (pattern)
         return sn_yaml_fail(pattern, SN_E_KEY,
                             "a mesh from a file has its own cells, expected "
                             "\"file\" and \"unit\" only");
-    if (unit) {
-        SN_TRY(sn_yaml_text(unit, "a unit of length such as mm", &text));
-        SN_TRY(sn_yaml_within(unit, sn_unit_to_si(text, "m", &factor, &offset)));
-    }
+    SN_TRY(sn_case_read_unit(mesh, &factor));
     SN_TRY(sn_yaml_text(file, "the path of a Gmsh mesh", &text));
     char *path;
-    SN_TRY(join_path(file, text, &path));
+    SN_TRY(sn_case_join_path(file, text, &path));
     sn_status status = sn_mesh_read_gmsh(path, factor, &c->mesh);
     sn_free(path);
     return sn_yaml_within(file, status);
@@ -154,7 +159,7 @@ static sn_status read_tissue(const sn_yaml *node, sn_tissue *tissue) {
     const char *name;
     char *path;
     SN_TRY(sn_yaml_text(node, "the path of a tissue file", &name));
-    SN_TRY(join_path(node, name, &path));
+    SN_TRY(sn_case_join_path(node, name, &path));
     sn_status status = sn_tissue_read(path, tissue);
     sn_free(path);
     return sn_yaml_within(node, status);

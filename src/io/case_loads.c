@@ -1,4 +1,4 @@
-// What acts on the body of a case file: supports, loads, tools; and the probes that watch it.
+// What acts on the body of a case file: supports and loads; and the probes that watch it.
 // SPDX-License-Identifier: Apache-2.0
 #include <ctype.h>
 #include <string.h>
@@ -9,8 +9,7 @@
 // Most items of a list: checks of the whole case compare them with each other.
 #define ITEMS_MAX 1000
 
-// A list of supports, loads, tools or probes, and room for them.
-static sn_status read_items(const sn_yaml *node, const char *what, size_t size, void **items) {
+sn_status sn_case_read_items(const sn_yaml *node, const char *what, size_t size, void **items) {
     SN_TRY(sn_yaml_list(node, what));
     if (node->count > ITEMS_MAX)
         return sn_yaml_fail(node, SN_E_RANGE, "found a list of %d, expected at most %d",
@@ -49,7 +48,8 @@ static sn_status read_fix(const sn_yaml *node, bool fix[3]) {
 sn_status sn_case_read_supports(const sn_yaml *node, sn_case *c) {
     static const char *const keys[] = {"on", "fix"};
     void *items = NULL;
-    SN_TRY(read_items(node, "supports such as {on: bottom, fix: xyz}", sizeof *c->support, &items));
+    SN_TRY(sn_case_read_items(node, "supports such as {on: bottom, fix: xyz}", sizeof *c->support,
+                              &items));
     c->support = items;
     for (const sn_yaml *item = node->first; item; item = item->next) {
         sn_support *support = &c->support[c->support_count++];
@@ -64,9 +64,8 @@ sn_status sn_case_read_supports(const sn_yaml *node, sn_case *c) {
 
 //---- histories -----------------------------------------------------------------------------------
 
-// [[time, value…], …] with `channels` values of one unit after each time.
-static sn_status read_table(const sn_yaml *node, int channels, const char *si_unit,
-                            const char *example, sn_history **history) {
+sn_status sn_case_read_table(const sn_yaml *node, int channels, const char *si_unit,
+                             const char *example, sn_history **history) {
     SN_TRY(sn_yaml_list(node, example));
     if (node->count == 0) return sn_yaml_fail(node, SN_E_SYNTAX, "an empty table, expected rows");
     double *time = sn_alloc((size_t)node->count, sizeof *time);
@@ -106,7 +105,8 @@ static sn_status read_factor(const sn_yaml *node, sn_history **factor) {
     if (!ramp == !table)
         return sn_yaml_fail(node, SN_E_KEY,
                             "expected either {ramp: 1 s} or {table: [[0 s, 0], [1 s, 1]]}");
-    if (table) return read_table(table, 1, "1", "rows [time, factor] such as [0 s, 0]", factor);
+    if (table)
+        return sn_case_read_table(table, 1, "1", "rows [time, factor] such as [0 s, 0]", factor);
     double time[2] = {0.0, 0.0};
     static const double value[2] = {0.0, 1.0};
     SN_TRY(sn_yaml_quantity(ramp, "s", &time[1]));
@@ -131,12 +131,32 @@ static sn_status read_displacement(const sn_yaml *node, sn_load *load) {
     return SN_OK;
 }
 
+// {point: [x, y, z], force: …}: at a material point; {on: top, force: …}: spread evenly over a
+// surface, which makes it a traction.
+static sn_status read_force(const sn_yaml *map, const sn_yaml *node, const sn_case *c,
+                            sn_load *load) {
+    const sn_yaml *on = sn_yaml_get(map, "on"), *point = sn_yaml_get(map, "point");
+    if (!on == !point)
+        return sn_yaml_fail(map, SN_E_KEY,
+                            "expected either \"on\" with the name of a surface or \"point\" with "
+                            "[x, y, z] for the force");
+    SN_TRY(sn_yaml_quantities(node, "N", 3, load->vector));
+    load->kind = SN_LOAD_FORCE;
+    if (point) return sn_yaml_quantities(point, "m", 3, load->point);
+    SN_TRY(read_surface(on, c, &load->surface));
+    const double area = sn_mesh_area(c->mesh, load->surface);
+    if (!(area > 0.0)) return sn_yaml_fail(on, SN_E_DEFINITION, "the surface has no area");
+    load->kind = SN_LOAD_TRACTION;
+    for (int d = 0; d < 3; d++) load->vector[d] /= area;
+    return SN_OK;
+}
+
 static sn_status read_load(const sn_yaml *map, const sn_case *c, sn_load *load) {
-    static const char *const keys[] = {"displacement", "traction", "pressure", "on", "time"};
-    SN_TRY(sn_yaml_map(map, keys, 5));
-    SN_TRY(need_surface(map, c, &load->surface));
+    static const char *const keys[] = {"displacement", "traction", "pressure", "force",
+                                       "on",           "point",    "time"};
+    SN_TRY(sn_yaml_map(map, keys, 7));
     const sn_yaml *kind = NULL;
-    for (int k = 0; k < 3; k++) { // in the order of sn_load_kind
+    for (int k = 0; k < 4; k++) { // in the order of sn_load_kind
         const sn_yaml *found = sn_yaml_get(map, keys[k]);
         if (!found) continue;
         if (kind)
@@ -147,31 +167,41 @@ static sn_status read_load(const sn_yaml *map, const sn_case *c, sn_load *load) 
     }
     if (!kind)
         return sn_yaml_fail(map, SN_E_KEY,
-                            "no load, expected one of displacement, traction, pressure");
-    if (load->kind == SN_LOAD_DISPLACEMENT)
-        SN_TRY(read_displacement(kind, load));
-    else if (load->kind == SN_LOAD_TRACTION)
-        SN_TRY(sn_yaml_quantities(kind, "Pa", 3, load->vector));
-    else
-        SN_TRY(sn_yaml_quantity(kind, "Pa", &load->pressure));
+                            "no load, expected one of displacement, traction, pressure, force");
+    const sn_yaml *point = sn_yaml_get(map, "point");
+    if (point && load->kind != SN_LOAD_FORCE)
+        return sn_yaml_fail(point, SN_E_KEY,
+                            "only a force acts at a point, a %s acts \"on\" a "
+                            "surface",
+                            kind->key);
+    if (load->kind == SN_LOAD_FORCE) {
+        SN_TRY(read_force(map, kind, c, load));
+    } else {
+        SN_TRY(need_surface(map, c, &load->surface));
+        if (load->kind == SN_LOAD_DISPLACEMENT)
+            SN_TRY(read_displacement(kind, load));
+        else if (load->kind == SN_LOAD_TRACTION)
+            SN_TRY(sn_yaml_quantities(kind, "Pa", 3, load->vector));
+        else
+            SN_TRY(sn_yaml_quantity(kind, "Pa", &load->pressure));
+    }
     const sn_yaml *time = sn_yaml_get(map, "time");
     return time ? read_factor(time, &load->factor) : SN_OK;
 }
 
 sn_status sn_case_read_loads(const sn_yaml *node, sn_case *c) {
     void *items = NULL;
-    SN_TRY(read_items(node, "loads such as {on: top, pressure: 1 kPa, time: {ramp: 1 s}}",
-                      sizeof *c->load, &items));
+    SN_TRY(sn_case_read_items(node, "loads such as {on: top, pressure: 1 kPa, time: {ramp: 1 s}}",
+                              sizeof *c->load, &items));
     c->load = items;
     for (const sn_yaml *item = node->first; item; item = item->next)
         SN_TRY(read_load(item, c, &c->load[c->load_count++]));
     return SN_OK;
 }
 
-//---- tools and probes ----------------------------------------------------------------------------
+//---- probes --------------------------------------------------------------------------------------
 
-// A name that heads columns of the history: short, plain, and not given before.
-static sn_status read_name(const sn_yaml *map, const sn_case *c, char name[SN_NAME_MAX]) {
+sn_status sn_case_read_name(const sn_yaml *map, const sn_case *c, char name[SN_NAME_MAX]) {
     static const char what[] = "a name of letters, digits, _ and -";
     const sn_yaml *node;
     char text[SN_NAME_MAX - 4]; // room for "_ux" behind it
@@ -188,56 +218,10 @@ static sn_status read_name(const sn_yaml *map, const sn_case *c, char name[SN_NA
     return SN_OK;
 }
 
-// Shapes of tools that a user may ask for but that are not there.
-static sn_status refuse_shapes(const sn_yaml *map) {
-    static const char *const shapes[] = {"box",  "plane",  "cylinder", "capsule",
-                                         "cone", "needle", "mesh",     "file"};
-    for (int k = 0; k < (int)(sizeof shapes / sizeof shapes[0]); k++) {
-        const sn_yaml *found = sn_yaml_get(map, shapes[k]);
-        if (found)
-            return sn_yaml_fail(found, SN_E_UNSUPPORTED,
-                                "this shape of a tool is not supported, expected sphere: radius");
-    }
-    return SN_OK;
-}
-
-static sn_status read_tool(const sn_yaml *map, const sn_case *c, sn_tool *tool) {
-    static const char *const keys[] = {"name", "sphere", "at", "path", "friction"};
-    const sn_yaml *node;
-    SN_TRY(refuse_shapes(map));
-    SN_TRY(sn_yaml_map(map, keys, 5));
-    SN_TRY(read_name(map, c, tool->name));
-    tool->kind = SN_TOOL_SPHERE;
-    SN_TRY(sn_yaml_need(map, "sphere", &node));
-    SN_TRY(sn_yaml_quantity(node, "m", &tool->radius));
-    if (!(tool->radius > 0.0)) return sn_yaml_expected(node, SN_E_RANGE, "a radius of more than 0");
-    SN_TRY(sn_yaml_need(map, "at", &node));
-    SN_TRY(sn_yaml_quantities(node, "m", 3, tool->at));
-    if ((node = sn_yaml_get(map, "path")))
-        SN_TRY(read_table(node, 3, "m", "rows [time, x, y, z] such as [1 s, 0 mm, 0 mm, -5 mm]",
-                          &tool->path));
-    if (!(node = sn_yaml_get(map, "friction"))) return SN_OK;
-    SN_TRY(sn_yaml_quantity(node, "1", &tool->friction));
-    if (tool->friction >= 0.0) return SN_OK;
-    return sn_yaml_expected(node, SN_E_RANGE, "a coefficient of 0 or more");
-}
-
-sn_status sn_case_read_tools(const sn_yaml *node, sn_case *c) {
-    void *items = NULL;
-    SN_TRY(read_items(node, "tools such as {name: probe, sphere: 5 mm, at: [0 mm, 0 mm, 9 mm]}",
-                      sizeof *c->tool, &items));
-    c->tool = items;
-    for (const sn_yaml *item = node->first; item; item = item->next) {
-        // counted before it is read, so that a half read one is released; it has no name yet
-        SN_TRY(read_tool(item, c, &c->tool[c->tool_count++]));
-    }
-    return SN_OK;
-}
-
 static sn_status read_probe(const sn_yaml *map, const sn_case *c, sn_probe *probe) {
     static const char *const keys[] = {"name", "point", "reaction"};
     SN_TRY(sn_yaml_map(map, keys, 3));
-    SN_TRY(read_name(map, c, probe->name));
+    SN_TRY(sn_case_read_name(map, c, probe->name));
     const sn_yaml *point = sn_yaml_get(map, "point"), *reaction = sn_yaml_get(map, "reaction");
     if (!point == !reaction)
         return sn_yaml_fail(map, SN_E_KEY,
@@ -250,8 +234,8 @@ static sn_status read_probe(const sn_yaml *map, const sn_case *c, sn_probe *prob
 
 sn_status sn_case_read_probes(const sn_yaml *node, sn_case *c) {
     void *items = NULL;
-    SN_TRY(
-        read_items(node, "probes such as {name: pull, reaction: top}", sizeof *c->probe, &items));
+    SN_TRY(sn_case_read_items(node, "probes such as {name: pull, reaction: top}", sizeof *c->probe,
+                              &items));
     c->probe = items;
     for (const sn_yaml *item = node->first; item; item = item->next)
         SN_TRY(read_probe(item, c, &c->probe[c->probe_count++]));

@@ -40,7 +40,7 @@ void sn_case_destroy(sn_case *c) {
     sn_free(c->support);
     for (int i = 0; i < c->load_count; i++) sn_history_destroy(c->load[i].factor);
     sn_free(c->load);
-    for (int i = 0; i < c->tool_count; i++) sn_history_destroy(c->tool[i].path);
+    for (int i = 0; i < c->tool_count; i++) sn_tool_release(&c->tool[i]);
     sn_free(c->tool);
     sn_free(c->probe);
     sn_free(c);
@@ -69,9 +69,8 @@ static sn_status copy_loads_and_tools(const sn_case *c, sn_case *to) {
         SN_TRY(copy_history(c->load[i].factor, &to->load[i].factor));
     }
     for (int i = 0; i < c->tool_count; i++) {
-        to->tool[i] = c->tool[i];
+        SN_TRY(sn_tool_copy(&c->tool[i], &to->tool[i]));
         to->tool_count = i + 1;
-        SN_TRY(copy_history(c->tool[i].path, &to->tool[i].path));
     }
     return SN_OK;
 }

@@ -4,6 +4,7 @@
 
 #include "base/vector.h"
 #include "model/mesh.h"
+#include "model/tool.h"
 
 // a tool may start this deep in the body, of the body's size: rounding of coordinates
 #define START_DEPTH 1e-6
@@ -68,6 +69,14 @@ static sn_status check_surface(const sn_mesh *mesh, int surface, const char *wha
     return SN_OK;
 }
 
+static sn_status check_point(const sn_case *c, const sn_load *load, int index) {
+    int cell;
+    double weight[4];
+    if (load->kind != SN_LOAD_FORCE) return SN_OK;
+    if (sn_mesh_locate(c->mesh, load->point, &cell, weight) == SN_OK) return SN_OK;
+    return sn_fail_within(SN_E_DEFINITION, "load %d, a force", index + 1);
+}
+
 static sn_status check_loads(const sn_case *c) {
     for (int i = 0; i < c->support_count; i++) {
         const sn_support *s = &c->support[i];
@@ -80,8 +89,10 @@ static sn_status check_loads(const sn_case *c) {
     }
     for (int i = 0; i < c->load_count; i++) {
         const sn_load *load = &c->load[i];
-        SN_TRY(check_surface(c->mesh, load->surface, "load", i));
-        const char *on = c->mesh->surface[load->surface].name;
+        const bool at_point = load->kind == SN_LOAD_FORCE;
+        if (!at_point) SN_TRY(check_surface(c->mesh, load->surface, "load", i));
+        const char *on = at_point ? "a point" : c->mesh->surface[load->surface].name;
+        SN_TRY(check_point(c, load, i));
         if (!finite3(load->vector) || !isfinite(load->pressure))
             return sn_fail(SN_E_RANGE, "load %d on \"%s\" is not a finite number", i + 1, on);
         if (load->factor && load->factor->channels != 1)
@@ -221,17 +232,16 @@ static sn_status check_probes(const sn_case *c) {
     return SN_OK;
 }
 
-// The deepest boundary node within a sphere: how deep, and the outward direction of the boundary
-// there.
-static double deepest_node(const sn_mesh *mesh, const double centre[3], double radius, int *node,
+// The deepest boundary node in a tool: how deep, and the outward direction of the boundary there.
+static double deepest_node(const sn_mesh *mesh, const sn_tool *tool, const sn_pose *pose, int *node,
                            double outwards[3]) {
     const sn_surface *s = &mesh->surface[sn_mesh_surface(mesh, "boundary")];
-    double nearest = (double)INFINITY;
+    double deepest = -(double)INFINITY;
     *node = s->face[0];
     for (size_t i = 0; i < 3 * (size_t)s->face_count; i++) {
-        double distance = distance3(mesh->node + 3 * (size_t)s->face[i], centre);
-        if (distance >= nearest) continue;
-        nearest = distance;
+        double depth = sn_tool_depth(tool, pose, mesh->node + 3 * (size_t)s->face[i], NULL);
+        if (!(depth > deepest)) continue;
+        deepest = depth;
         *node = s->face[i];
     }
     memset(outwards, 0, 3 * sizeof *outwards);
@@ -244,36 +254,78 @@ static double deepest_node(const sn_mesh *mesh, const double centre[3], double r
     }
     double length = norm3(outwards);
     for (int d = 0; d < 3; d++) outwards[d] /= length;
-    return radius - nearest;
+    return deepest;
+}
+
+// Whether a tool that no node has entered stands in the body all the same: points of its own that
+// are inside, by which a small tool is found between the nodes of a coarse surface.
+static bool has_point_inside(const sn_mesh *mesh, const sn_tool *tool, const sn_pose *pose) {
+    int cell, corners = 0;
+    double weight[4], at[3];
+    if (tool->kind == SN_TOOL_PLANE) return false;
+    if (tool->kind != SN_TOOL_MESH && sn_mesh_find_point(mesh, pose->centre, &cell, weight))
+        return true;
+    if (tool->kind == SN_TOOL_CAPSULE) {
+        times3(pose->turn, tool->axis, at);
+        for (int d = 0; d < 3; d++) at[d] += pose->centre[d];
+        return sn_mesh_find_point(mesh, at, &cell, weight);
+    }
+    const double *corner = tool->surface ? sn_tool_surface_corners(tool->surface, &corners) : NULL;
+    for (int k = 0; k < corners; k++) {
+        times3(pose->turn, corner + 3 * (size_t)k, at);
+        for (int d = 0; d < 3; d++) at[d] += pose->centre[d];
+        if (sn_mesh_find_point(mesh, at, &cell, weight)) return true;
+    }
+    return false;
 }
 
 static sn_status check_tool_start(const sn_mesh *mesh, const sn_tool *tool) {
-    double centre[3], outwards[3], weight[4];
-    int node, cell;
-    sn_tool_centre(tool, 0, centre);
-    double depth = deepest_node(mesh, centre, tool->radius, &node, outwards);
-    bool inside = sn_mesh_find_point(mesh, centre, &cell, weight);
+    double outwards[3];
+    int node;
+    sn_pose pose;
+    sn_tool_pose(tool, 0, &pose);
+    double depth = deepest_node(mesh, tool, &pose, &node, outwards);
+    bool inside = has_point_inside(mesh, tool, &pose);
     if (depth <= START_DEPTH * sn_mesh_size(mesh) && !inside) return SN_OK;
 
+    const double *x = mesh->node + 3 * (size_t)node, *at = pose.centre;
+    if (tool->kind != SN_TOOL_SPHERE)
+        return sn_fail(
+            SN_E_DEFINITION,
+            "tool \"%s\" starts inside the body, near node %d at (%g, %g, %g) m: move it "
+            "out along (%.2g, %.2g, %.2g)%s",
+            tool->name, node, x[0], x[1], x[2], outwards[0], outwards[1], outwards[2],
+            tool->kind == SN_TOOL_PLANE ? ", or turn its normal round" : "");
     // from the node on, the centre must stand a radius away along the outward direction
-    const double *x = mesh->node + 3 * (size_t)node;
     double free[3];
     for (int d = 0; d < 3; d++) free[d] = x[d] + tool->radius * outwards[d];
     return sn_fail(
         SN_E_DEFINITION,
         "tool \"%s\" starts inside the body, %.3g m deep at node %d at (%g, %g, %g) m: move "
         "its centre from (%g, %g, %g) m to (%g, %g, %g) m or beyond",
-        tool->name, inside ? 2 * tool->radius - depth : depth, node, x[0], x[1], x[2], centre[0],
-        centre[1], centre[2], free[0], free[1], free[2]);
+        tool->name, inside ? 2 * tool->radius - depth : depth, node, x[0], x[1], x[2], at[0], at[1],
+        at[2], free[0], free[1], free[2]);
+}
+
+static sn_status check_tool_shape(const sn_tool *tool) {
+    bool round = tool->kind == SN_TOOL_SPHERE || tool->kind == SN_TOOL_CAPSULE;
+    if ((round && !(tool->radius > 0)) || !isfinite(tool->radius) || !finite3(tool->at))
+        return sn_fail(SN_E_RANGE,
+                       "tool \"%s\": radius %g m must be positive, and its place finite",
+                       tool->name, tool->radius);
+    if (!finite3(tool->axis) || (tool->kind == SN_TOOL_PLANE && !(norm3(tool->axis) > 0)))
+        return sn_fail(SN_E_RANGE, "tool \"%s\": the direction (%g, %g, %g) must be finite%s",
+                       tool->name, tool->axis[0], tool->axis[1], tool->axis[2],
+                       tool->kind == SN_TOOL_PLANE ? " and have a length" : "");
+    if (tool->kind == SN_TOOL_MESH && !tool->surface)
+        return sn_fail(SN_E_DEFINITION, "tool \"%s\": no surface", tool->name);
+    return SN_OK;
 }
 
 static sn_status check_tools(const sn_case *c) {
     for (int i = 0; i < c->tool_count; i++) {
         const sn_tool *tool = &c->tool[i];
-        if (!(tool->radius > 0) || !isfinite(tool->radius) || !finite3(tool->at))
-            return sn_fail(SN_E_RANGE,
-                           "tool \"%s\": radius %g m must be positive, and its place finite",
-                           tool->name, tool->radius);
+        SN_TRY(check_tool_shape(tool));
         if (!(tool->friction >= 0) || !isfinite(tool->friction))
             return sn_fail(SN_E_RANGE, "tool \"%s\": friction %g must be 0 or more", tool->name,
                            tool->friction);
@@ -281,6 +333,10 @@ static sn_status check_tools(const sn_case *c) {
             return sn_fail(SN_E_DEFINITION,
                            "tool \"%s\": its path has %d columns of values, 3 expected", tool->name,
                            tool->path->channels);
+        if (tool->turn && tool->turn->channels != 3)
+            return sn_fail(SN_E_DEFINITION,
+                           "tool \"%s\": its turn has %d columns of values, 3 expected", tool->name,
+                           tool->turn->channels);
         SN_TRY(check_tool_start(c->mesh, tool));
     }
     return SN_OK;

@@ -96,6 +96,16 @@ double sn_mesh_cell_volume(const sn_mesh *mesh, int cell) {
     return dot3(normal, ad) / 6;
 }
 
+double sn_mesh_area(const sn_mesh *mesh, int surface) {
+    const sn_surface *s = &mesh->surface[surface];
+    double area = 0, normal[3];
+    for (int f = 0; f < s->face_count; f++) {
+        sn_triangle_normal(mesh, s->face + 3 * (size_t)f, normal);
+        area += 0.5 * norm3(normal);
+    }
+    return area;
+}
+
 double sn_mesh_volume(const sn_mesh *mesh) {
     double volume = 0;
     for (int c = 0; c < mesh->cell_count; c++) volume += sn_mesh_cell_volume(mesh, c);

@@ -92,6 +92,21 @@ static sn_status build_traction(const sn_case *c, const sn_load *load, double *a
     return SN_OK;
 }
 
+static sn_status build_force(const sn_case *c, const sn_load *load, sn_net_load *out) {
+    int cell;
+    double weight[4];
+    SN_TRY(sn_mesh_locate(c->mesh, load->point, &cell, weight));
+    out->count = 4;
+    out->node = sn_alloc(4, sizeof *out->node);
+    out->force = sn_alloc(12, sizeof *out->force);
+    if (!out->node || !out->force) return SN_E_MEMORY;
+    for (int a = 0; a < 4; a++) {
+        out->node[a] = c->mesh->cell[4 * cell + a];
+        for (int d = 0; d < 3; d++) out->force[3 * a + d] = weight[a] * load->vector[d];
+    }
+    return SN_OK;
+}
+
 static sn_status build_loads(const sn_case *c, sn_net *net, double *area) {
     net->load = sn_alloc((size_t)c->load_count, sizeof *net->load);
     if (!net->load) return SN_E_MEMORY;
@@ -104,6 +119,10 @@ static sn_status build_loads(const sn_case *c, sn_net *net, double *area) {
         SN_TRY(copy_history(load->factor, &out->factor));
         if (load->kind == SN_LOAD_TRACTION) {
             SN_TRY(build_traction(c, load, area, out));
+            continue;
+        }
+        if (load->kind == SN_LOAD_FORCE) {
+            SN_TRY(build_force(c, load, out));
             continue;
         }
         const sn_surface *s = &c->mesh->surface[load->surface];
@@ -120,10 +139,8 @@ static sn_status build_tools(const sn_case *c, sn_net *net, double *area) {
     net->tool = sn_alloc((size_t)c->tool_count, sizeof *net->tool);
     if (!net->tool) return SN_E_MEMORY;
     for (int t = 0; t < c->tool_count; t++) {
-        net->tool[t] = c->tool[t];
-        net->tool[t].path = NULL;
+        SN_TRY(sn_tool_copy(&c->tool[t], &net->tool[t]));
         net->tool_count = t + 1;
-        SN_TRY(copy_history(c->tool[t].path, &net->tool[t].path));
     }
     int boundary = sn_mesh_surface(c->mesh, "boundary");
     if (boundary < 0) return SN_E_NAME;
@@ -223,7 +240,8 @@ double sn_net_next_corner(const sn_net *net, double t) {
     for (int l = 0; l < net->load_count; l++)
         next = fmin(next, sn_history_next(net->load[l].factor, t));
     for (int k = 0; k < net->tool_count; k++)
-        next = fmin(next, sn_history_next(net->tool[k].path, t));
+        next = fmin(next, fmin(sn_history_next(net->tool[k].path, t),
+                               sn_history_next(net->tool[k].turn, t)));
     return next;
 }
 
@@ -241,10 +259,10 @@ bool sn_net_changes(const sn_net *net, double from, double to) {
     for (int l = 0; l < net->load_count; l++)
         changes = changes || factor_changes(net->load[l].factor, from, to);
     for (int k = 0; k < net->tool_count; k++) {
-        double a[3], b[3];
-        sn_tool_centre(&net->tool[k], from, a);
-        sn_tool_centre(&net->tool[k], to, b);
-        changes = changes || memcmp(a, b, sizeof a) != 0;
+        sn_pose a, b;
+        sn_tool_pose(&net->tool[k], from, &a);
+        sn_tool_pose(&net->tool[k], to, &b);
+        changes = changes || memcmp(&a, &b, sizeof a) != 0;
     }
     return changes;
 }
@@ -283,7 +301,7 @@ void sn_net_loads(const sn_net *net, double t, sn_precision precision, const voi
         const sn_net_load *load = &net->load[l];
         double factor;
         sn_history_at(load->factor, t, &factor);
-        if (load->kind == SN_LOAD_TRACTION) {
+        if (load->kind != SN_LOAD_PRESSURE) {
             for (int k = 0; k < load->count; k++)
                 for (int d = 0; d < 3; d++)
                     ext[3 * load->node[k] + d] += factor * load->force[3 * k + d];
@@ -302,7 +320,8 @@ void sn_net_loads(const sn_net *net, double t, sn_precision precision, const voi
 
 void sn_net_contact(const sn_net *net, const sn_contact_call *call) {
     for (int t = 0; t < net->tool_count; t++) {
-        const double *centre = call->centre[t], radius = net->tool[t].radius;
+        const sn_pose *pose = &call->pose[t];
+        const double reach = sn_tool_reach(&net->tool[t]);
         double *sum = call->tool_force[t];
         sum[0] = sum[1] = sum[2] = 0.0;
         for (int k = 0; k < net->contact_count; k++) {
@@ -310,12 +329,12 @@ void sn_net_contact(const sn_net *net, const sn_contact_call *call) {
             const size_t at = (size_t)t * (size_t)net->contact_count + (size_t)k;
             double x[3], force[3], tangent[9], r2 = 0.0;
             position(net, call->precision, call->u, node, x);
-            for (int d = 0; d < 3; d++) r2 += (x[d] - centre[d]) * (x[d] - centre[d]);
-            if (r2 >= radius * radius) {
+            for (int d = 0; d < 3; d++) r2 += (x[d] - pose->centre[d]) * (x[d] - pose->centre[d]);
+            if (r2 >= reach * reach) {
                 call->after[at] = (sn_contact){0};
                 continue;
             }
-            if (!sn_tool_contact(&net->tool[t], centre, x, net->contact_stiffness[k],
+            if (!sn_tool_contact(&net->tool[t], pose, x, net->contact_stiffness[k],
                                  &call->before[at], &call->after[at], force,
                                  call->tangent ? tangent : NULL))
                 continue;
@@ -328,10 +347,9 @@ void sn_net_contact(const sn_net *net, const sn_contact_call *call) {
     }
 }
 
-void sn_net_tool_centre(const sn_net *net, const sn_state *state, int tool, double t,
-                        double centre[3]) {
+void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose) {
     if (state && state->tool_set[tool])
-        memcpy(centre, state->tool_centre[tool], 3 * sizeof *centre);
+        *pose = state->tool_pose[tool];
     else
-        sn_tool_centre(&net->tool[tool], t, centre);
+        sn_tool_pose(&net->tool[tool], t, pose);
 }

@@ -319,7 +319,7 @@ static void destroy_drive(sn_net *n) {
         sn_free(n->load[k].node);
         sn_free(n->load[k].force);
     }
-    for (int k = 0; k < n->tool_count; k++) sn_history_destroy(n->tool[k].path);
+    for (int k = 0; k < n->tool_count; k++) sn_tool_release(&n->tool[k]);
     for (int k = 0; k < n->probe_count; k++) sn_free(n->probe[k].fixed);
     void *all[] = {n->factor,       n->load,   n->tool,
                    n->probe,        n->fixed,  n->fixed_bits,

@@ -43,14 +43,14 @@ typedef struct sn_net_fixed {
     double value;
 } sn_net_fixed;
 
-/// Traction lumped at nodes, or faces under pressure.
+/// Traction or force lumped at nodes, or faces under pressure.
 typedef struct sn_net_load {
     sn_load_kind kind;
     sn_history *factor; ///< Nullable, owned
     double pressure;
-    int count;     ///< nodes of a traction, faces of a pressure
+    int count;     ///< nodes of a traction or force, faces of a pressure
     int *node;     ///<                                       (count, or count x 3)
-    double *force; ///< traction: N at factor 1               (count x 3)
+    double *force; ///< traction or force: N at factor 1      (count x 3)
 } sn_net_load;
 
 typedef struct sn_net_probe {
@@ -141,13 +141,13 @@ struct sn_state {
     void *f_before; ///< quads: total force at the start of the last step
     void *store;
     sn_scratch now;
-    double factors_step;      ///< of `factors`; 0: none yet
-    sn_factors *factors;      ///< (region_count)
-    double last_step;         ///< length of the last step
-    double *a_fixed;          ///< acceleration of prescribed directions (fixed_count)
-    double *ext;              ///< force of loads and tools             (nodes x 3)
-    sn_contact *contact;      ///< (tool_count x contact_count)
-    double (*tool_centre)[3]; ///< where sn_state_set_tool() put it
+    double factors_step; ///< of `factors`; 0: none yet
+    sn_factors *factors; ///< (region_count)
+    double last_step;    ///< length of the last step
+    double *a_fixed;     ///< acceleration of prescribed directions (fixed_count)
+    double *ext;         ///< force of loads and tools             (nodes x 3)
+    sn_contact *contact; ///< (tool_count x contact_count)
+    sn_pose *tool_pose;  ///< where sn_state_set_tool() put it
     bool *tool_set;
     double (*tool_force)[3];
     // the search for the highest frequency, always double
@@ -216,7 +216,7 @@ typedef void sn_tangent_sink(void *context, int node, const double tangent[9]);
 typedef struct sn_contact_call {
     sn_precision precision;
     const void *u;
-    double (*centre)[3]; ///< of the tools, read only
+    const sn_pose *pose; ///< of the tools
     const sn_contact *before;
     sn_contact *after;
     double *ext;
@@ -226,8 +226,7 @@ typedef struct sn_contact_call {
 } sn_contact_call;
 void sn_net_contact(const sn_net *net, const sn_contact_call *call);
 /// Where a tool is at time t.
-void sn_net_tool_centre(const sn_net *net, const sn_state *state, int tool, double t,
-                        double centre[3]);
+void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose);
 
 //---- explicit integration -----------------------------------------------------------------------
 

@@ -67,8 +67,13 @@ static double smallest_ratio(const sn_net *net, const double *u) {
     return least;
 }
 
+// conjugate gradients want the symmetric part, which is all of it but for friction
 static void contact_block(void *context, int node, const double block[9]) {
-    sn_tangent_add(context, node, block);
+    double symmetric[9];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            symmetric[3 * i + j] = 0.5 * (block[3 * i + j] + block[3 * j + i]);
+    sn_tangent_add(context, node, symmetric);
 }
 
 static void external(solver *v, sn_tangent *tangent) {
@@ -80,10 +85,10 @@ static void external(solver *v, sn_tangent *tangent) {
         for (int d = 0; d < 3; d++)
             v->ext[3 * i + d] = v->level * (v->ext[3 * i + d] + net->mass[i] * net->gravity[d]);
     for (int t = 0; t < net->tool_count; t++)
-        sn_net_tool_centre(net, s, t, v->time, s->tool_centre[t]);
+        sn_net_tool_pose(net, s, t, v->time, &s->tool_pose[t]);
     const sn_contact_call call = {.precision = SN_DOUBLE,
                                   .u = s->u,
-                                  .centre = s->tool_centre,
+                                  .pose = s->tool_pose,
                                   .before = s->contact,
                                   .after = v->touch,
                                   .ext = v->ext,

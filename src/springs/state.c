@@ -52,7 +52,7 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->a_fixed = sn_alloc((size_t)net->fixed_count, sizeof *s->a_fixed);
     s->ext = sn_alloc(nodes * 3, sizeof *s->ext);
     s->contact = sn_alloc(tools * (size_t)net->contact_count, sizeof *s->contact);
-    s->tool_centre = sn_alloc(tools, sizeof *s->tool_centre);
+    s->tool_pose = sn_alloc(tools, sizeof *s->tool_pose);
     s->tool_set = sn_alloc(tools, sizeof *s->tool_set);
     s->tool_force = sn_alloc(tools, sizeof *s->tool_force);
     s->probe_u = sn_alloc(steps ? nodes * 4 : 0, sizeof *s->probe_u);
@@ -60,7 +60,7 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->mode = sn_alloc(nodes * 3, sizeof *s->mode);
     s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_MAX + 1) : 0, sizeof *s->basis);
     bool all = s->u && s->v && s->f_before && s->store && s->factors && s->a_fixed && s->ext &&
-               s->contact && s->tool_centre && s->tool_set && s->tool_force && s->probe_u &&
+               s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_u &&
                s->probe_trial && s->mode && s->basis;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
         (steps && sn_scratch_create(net, SN_DOUBLE, &s->probe) != SN_OK)) {
@@ -77,7 +77,7 @@ void sn_state_destroy(sn_state *s) {
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
     void *all[] = {s->u,       s->v,       s->f_before,    s->store,    s->factors,
-                   s->a_fixed, s->ext,     s->contact,     s->tool_set, s->tool_centre,
+                   s->a_fixed, s->ext,     s->contact,     s->tool_set, s->tool_pose,
                    s->mode,    s->probe_u, s->probe_trial, s->basis,    s->tool_force};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(s);
@@ -96,10 +96,10 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
     sn_net_clear_ext(net, s->ext);
     sn_net_loads(net, s->time, s->precision, s->u, s->ext);
     for (int t = 0; t < net->tool_count; t++)
-        sn_net_tool_centre(net, s, t, s->time, s->tool_centre[t]);
+        sn_net_tool_pose(net, s, t, s->time, &s->tool_pose[t]);
     const sn_contact_call touch = {.precision = s->precision,
                                    .u = s->u,
-                                   .centre = s->tool_centre,
+                                   .pose = s->tool_pose,
                                    .before = s->contact,
                                    .after = s->contact,
                                    .ext = s->ext,
@@ -152,10 +152,10 @@ void sn_state_reset(const sn_net *net, sn_state *s) {
     put_to_rest(net, s);
 }
 
-void sn_state_set_tool(const sn_net *net, sn_state *s, int tool, const double centre[3]) {
+void sn_state_set_tool(const sn_net *net, sn_state *s, int tool, const sn_pose *pose) {
     SN_ASSERT(tool >= 0 && tool < net->tool_count);
     s->tool_set[tool] = true;
-    memcpy(s->tool_centre[tool], centre, 3 * sizeof *centre);
+    s->tool_pose[tool] = *pose;
 }
 
 //---- damping -------------------------------------------------------------------------------------

@@ -148,11 +148,12 @@ static void on_mesh(void **state) {
     assert_false(copy->has_shape);
     assert_int_equal(copy->support_count, 1);
     assert_true(copy->support[0].fix[2]);
-    double f, centre[3];
+    double f;
+    sn_pose pose;
     sn_history_at(copy->load[0].factor, 0.25, &f);
     CHECK_ABS(f, 0.5, 1e-15);
-    sn_tool_centre(&copy->tool[0], 0, centre);
-    CHECK_ABS(centre[2], 0.029, 1e-17);
+    sn_tool_pose(&copy->tool[0], 0, &pose);
+    CHECK_ABS(pose.centre[2], 0.029, 1e-17);
     assert_string_equal(copy->probe[0].name, "tip");
     CHECK_OK(sn_case_check(copy));
 

@@ -11,6 +11,19 @@ static sn_tool sphere(double friction) {
         .name = "probe", .radius = RADIUS, .at = {0.01, -0.02, 0.03}, .friction = friction};
 }
 
+static bool touch(const sn_tool *tool, const double centre[3], const double position[3],
+                  double stiffness, const sn_contact *before, sn_contact *after, double force[3],
+                  double tangent[9]) {
+    const sn_pose pose = sn_pose_at(centre);
+    return sn_tool_contact(tool, &pose, position, stiffness, before, after, force, tangent);
+}
+
+static void centre_at(const sn_tool *tool, double t, double centre[3]) {
+    sn_pose pose;
+    sn_tool_pose(tool, t, &pose);
+    for (int i = 0; i < 3; i++) centre[i] = pose.centre[i];
+}
+
 static double dot(const double *a, const double *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -36,17 +49,17 @@ static void random_contact(uint64_t *seed, double depth, double slip, const doub
 }
 
 // The tangent against central differences of the force. Returns the largest entry off symmetry of
-// the differences, which the tangent drops.
+// the differences.
 static double check_tangent(const sn_tool *tool, const double x[3], const sn_contact *before) {
     double force[3], tangent[9], K[9], h = 1e-5 * RADIUS;
     sn_contact after;
-    assert_true(sn_tool_contact(tool, tool->at, x, STIFFNESS, before, &after, force, tangent));
+    assert_true(touch(tool, tool->at, x, STIFFNESS, before, &after, force, tangent));
     for (int j = 0; j < 3; j++) {
         double y[3] = {x[0], x[1], x[2]}, up[3], down[3];
         y[j] = x[j] + h;
-        assert_true(sn_tool_contact(tool, tool->at, y, STIFFNESS, before, &after, up, NULL));
+        assert_true(touch(tool, tool->at, y, STIFFNESS, before, &after, up, NULL));
         y[j] = x[j] - h;
-        assert_true(sn_tool_contact(tool, tool->at, y, STIFFNESS, before, &after, down, NULL));
+        assert_true(touch(tool, tool->at, y, STIFFNESS, before, &after, down, NULL));
         for (int i = 0; i < 3; i++) K[3 * i + j] = -(up[i] - down[i]) / (2 * h);
     }
     double skew = 0;
@@ -54,9 +67,7 @@ static double check_tangent(const sn_tool *tool, const double x[3], const sn_con
         for (int j = 0; j < 3; j++) {
             // truncation h^2 = 1e-10 over the smallest length squared, (slip/radius)^2 = 1e-2 or
             // so; rounding 1e-16 / 1e-5
-            CHECK_ABS(tangent[3 * i + j] / STIFFNESS,
-                      0.5 * (K[3 * i + j] + K[3 * j + i]) / STIFFNESS, 2e-9);
-            assert_true(tangent[3 * i + j] == tangent[3 * j + i]);
+            CHECK_ABS(tangent[3 * i + j] / STIFFNESS, K[3 * i + j] / STIFFNESS, 2e-9);
             skew = fmax(skew, fabs(K[3 * i + j] - K[3 * j + i]) / STIFFNESS);
         }
     return skew;
@@ -75,12 +86,12 @@ static void tangents(void **state) {
         CHECK_ABS(skew, 0, 1e-9); // no friction: the force has a potential
         // stick: slip below 0.3 * 0.1 of the radius
         random_contact(&seed, 0.1 * RADIUS, 0.029 * RADIUS, rough.at, x, &before);
-        sn_tool_contact(&rough, rough.at, x, STIFFNESS, &before, &after, force, NULL);
+        touch(&rough, rough.at, x, STIFFNESS, &before, &after, force, NULL);
         assert_memory_equal(after.anchor, before.anchor, sizeof after.anchor);
         check_tangent(&rough, x, &before);
         // slip, unless the anchor lies nearly along the normal
         random_contact(&seed, 0.1 * RADIUS, 0.5 * RADIUS, rough.at, x, &before);
-        sn_tool_contact(&rough, rough.at, x, STIFFNESS, &before, &after, force, NULL);
+        touch(&rough, rough.at, x, STIFFNESS, &before, &after, force, NULL);
         if (!memcmp(after.anchor, before.anchor, sizeof after.anchor)) continue;
         skew = check_tangent(&rough, x, &before);
         assert_true(skew > 0.01); // slip has no potential: the differences see it
@@ -92,7 +103,7 @@ static void normal_force(void **state) {
     sn_tool tool = sphere(0);
     sn_contact none = {0}, after;
     double force[3], tangent[9], x[3] = {0.01, -0.02, 0.03 - 0.9 * RADIUS};
-    assert_true(sn_tool_contact(&tool, tool.at, x, STIFFNESS, &none, &after, force, tangent));
+    assert_true(touch(&tool, tool.at, x, STIFFNESS, &none, &after, force, tangent));
     assert_true(after.touching);
     // pushed away from the centre: k * depth; 0.03 - 0.9 R and back rounds at 1e-16 * 0.03/(0.1 R)
     CHECK_REL(force[2], -STIFFNESS * 0.1 * RADIUS, 1e-13);
@@ -104,12 +115,12 @@ static void normal_force(void **state) {
     x[2] = 0.03 - 1.0001 * RADIUS; // out of reach: nothing, and what was there is wiped
     after.touching = true;
     force[0] = tangent[3] = 7;
-    assert_false(sn_tool_contact(&tool, tool.at, x, STIFFNESS, &none, &after, force, tangent));
+    assert_false(touch(&tool, tool.at, x, STIFFNESS, &none, &after, force, tangent));
     assert_false(after.touching);
     CHECK_ABS(length(force), 0, 0);
     for (int i = 0; i < 9; i++) CHECK_ABS(tangent[i], 0, 0);
     x[2] = 0.03; // the very centre has no direction
-    assert_false(sn_tool_contact(&tool, tool.at, x, STIFFNESS, &none, &after, force, NULL));
+    assert_false(touch(&tool, tool.at, x, STIFFNESS, &none, &after, force, NULL));
 
     // penalty energy k depth^2 / 2: work along a path equals its change (Simpson on 200 intervals)
     double from[3] = {0.01 + 0.2 * RADIUS, -0.02, 0.03 - 0.7 * RADIUS};
@@ -119,7 +130,7 @@ static void normal_force(void **state) {
     for (int k = 0; k <= 200; k++) {
         double y[3], s = k / 200.0;
         for (int i = 0; i < 3; i++) y[i] = from[i] + s * d[i];
-        sn_tool_contact(&tool, tool.at, y, STIFFNESS, &none, &after, force, NULL);
+        touch(&tool, tool.at, y, STIFFNESS, &none, &after, force, NULL);
         work += dot(force, d) / 600 * (k == 0 || k == 200 ? 1 : k % 2 ? 4 : 2);
         double r[3];
         for (int i = 0; i < 3; i++) r[i] = y[i] - tool.at[i];
@@ -143,8 +154,8 @@ static void turned(void **state) {
         turned_before = before;
         turned_before.anchor[0] = -before.anchor[1];
         turned_before.anchor[1] = before.anchor[0];
-        sn_tool_contact(&tool, origin, x, STIFFNESS, &before, &after, f, K);
-        sn_tool_contact(&tool, origin, y, STIFFNESS, &turned_before, &turned_after, g, L);
+        touch(&tool, origin, x, STIFFNESS, &before, &after, f, K);
+        touch(&tool, origin, y, STIFFNESS, &turned_before, &turned_after, g, L);
         double tiny = 1e-15 * STIFFNESS; // rounding
         CHECK_ABS(g[0], -f[1], tiny * RADIUS);
         CHECK_ABS(g[1], f[0], tiny * RADIUS);
@@ -171,7 +182,7 @@ static void stick_and_slip(void **state) {
         double angle = 0.0002 * (k <= 200 ? k : 400 - k);
         double x[3] = {tool.at[0] + distance * sin(angle), tool.at[1],
                        tool.at[2] - distance * cos(angle)};
-        assert_true(sn_tool_contact(&tool, tool.at, x, STIFFNESS, &memory, &memory, force, NULL));
+        assert_true(touch(&tool, tool.at, x, STIFFNESS, &memory, &memory, force, NULL));
         double t[3] = {cos(angle), 0, sin(angle)}, n[3] = {sin(angle), 0, -cos(angle)};
         tangential_now = dot(force, t);
         // rounding: coordinates 0.03 with 1e-16 against a depth of 2e-4
@@ -190,7 +201,7 @@ static void stick_and_slip(void **state) {
     // first touch makes no friction
     sn_contact none = {0};
     double x[3] = {tool.at[0], tool.at[1] + 0.6 * distance, tool.at[2] - 0.8 * distance};
-    sn_tool_contact(&tool, tool.at, x, STIFFNESS, &none, &memory, force, NULL);
+    touch(&tool, tool.at, x, STIFFNESS, &none, &memory, force, NULL);
     CHECK_REL(length(force), STIFFNESS * depth, 1e-12);
     CHECK_REL(length(memory.anchor), distance, 1e-12);
 }
@@ -206,16 +217,16 @@ static void moves_along(void **state) {
     double centre[3], force[3], first[3];
     sn_contact memory = {0};
     for (int k = 0; k <= 10; k++) {
-        sn_tool_centre(&tool, 0.2 * k, centre);
+        centre_at(&tool, 0.2 * k, centre);
         for (int i = 0; i < 3; i++)
             CHECK_ABS(centre[i], tool.at[i] + 0.1 * k * value[3 + i], 1e-17);
         double x[3] = {centre[0] + 0.6 * 0.95 * RADIUS, centre[1], centre[2] + 0.8 * 0.95 * RADIUS};
-        sn_tool_contact(&tool, centre, x, STIFFNESS, &memory, &memory, force, NULL);
+        touch(&tool, centre, x, STIFFNESS, &memory, &memory, force, NULL);
         if (k == 0) memcpy(first, force, sizeof first);
         for (int i = 0; i < 3; i++) CHECK_ABS(force[i], first[i], 1e-15); // 0.03 m * 1e-16 * 37 N/m
     }
     tool.path = NULL;
-    sn_tool_centre(&tool, 1, centre);
+    centre_at(&tool, 1, centre);
     assert_memory_equal(centre, tool.at, sizeof centre);
     sn_history_destroy(path);
 }

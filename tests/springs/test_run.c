@@ -284,10 +284,11 @@ static void steps_do_not_allocate(void **state) {
     CHECK_OK(sn_net_create(c, &net));
     CHECK_OK(sn_state_create(net, &s));
     long before = allocations;
-    double force[3], most = 0, centre[3] = {0.02, 0.01, 0.0301};
+    double force[3], most = 0;
+    sn_pose hand = sn_pose_at((double[]){0.02, 0.01, 0.0301});
     for (int n = 0; n < 400; n++) { // a hand pushes down, and leaves
-        centre[2] = 0.0301 - 0.003 * sin(acos(-1) * n / 400);
-        sn_state_set_tool(net, s, 0, centre);
+        hand.centre[2] = 0.0301 - 0.003 * sin(acos(-1) * n / 400);
+        sn_state_set_tool(net, s, 0, &hand);
         sn_state_step(net, s, 1e-3);
         sn_state_tool_force(net, s, 0, force);
         most = fmax(most, force[2]);
