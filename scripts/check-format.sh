@@ -3,5 +3,5 @@
 set -eu
 cd "$(dirname "$0")/.."
 formatter=$(command -v clang-format-14 || command -v clang-format)
-find src include tests examples bench -name '*.[ch]' | sort |
+find src include tests examples -name '*.[ch]' | sort |
     xargs "$formatter" --dry-run --Werror --style=file

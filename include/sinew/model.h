@@ -39,7 +39,12 @@ typedef enum sn_pattern {
 } sn_pattern;
 
 /// What the built-in shapes take.
-typedef enum sn_shape { SN_SHAPE_BLOCK, SN_SHAPE_CYLINDER, SN_SHAPE_TUBE } sn_shape;
+typedef enum sn_shape {
+    SN_SHAPE_BLOCK,
+    SN_SHAPE_CYLINDER,
+    SN_SHAPE_TUBE,
+    SN_SHAPE_ELLIPSOID
+} sn_shape;
 typedef struct sn_shape_def {
     sn_shape shape;
     sn_pattern pattern;
@@ -47,7 +52,10 @@ typedef struct sn_shape_def {
     double radius;                     ///< cylinder, m
     double inner_radius, outer_radius; ///< tube, m
     double length;                     ///< cylinder and tube, m, along z from 0
-    int cells[3]; ///< block: along x y z; cylinder and tube: radial, around, along
+    double inner[2], outer[2];         ///< ellipsoid: half axes of its walls, short and long, m
+    double base;                       ///< ellipsoid: z of the cut, m
+    int cells[3]; ///< block: along x y z; cylinder and tube: radial, around, along; ellipsoid:
+                  ///< through, around, along
 } sn_shape_def;
 
 /// Most tetrahedra a mesh may have (32-bit indices, and memory).
@@ -55,9 +63,11 @@ typedef struct sn_shape_def {
 
 /// Builds a built-in shape with its surfaces: block left right front back bottom top
 /// (-x +x -y +y -z +z) from the origin; tube inner outer bottom top; cylinder outer bottom top; all
-/// with "boundary" as the last. One region, "body". Tube and cylinder have a node on the x axis of
+/// with "boundary" as the last; ellipsoid (about z, open at z = base, its apex at -z) inner outer
+/// base. One region, "body". Tube and cylinder have a node on the x axis of
 /// every ring. Cylinder: rings of 6, 12, 18, … points until `around` is reached (of evenly growing
-/// counts where around > 6 radial); it has no bcc pattern.
+/// counts where around > 6 radial); it has no bcc pattern. Ellipsoid: a disc of such rings, `along`
+/// of them, bent over the wall.
 /// @return SN_OK, SN_E_RANGE (sizes, counts, more than SN_CELLS_MAX), SN_E_UNSUPPORTED, SN_E_MESH
 /// (cells too thin), SN_E_MEMORY.
 SN_API sn_status sn_mesh_build(const sn_shape_def *def, sn_mesh **mesh);

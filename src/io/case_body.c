@@ -83,11 +83,34 @@ static sn_status read_tube(const sn_yaml *map, sn_shape_def *def) {
     return read_cells(map, "[radial, around, along]", def->cells);
 }
 
+static sn_status read_axes(const sn_yaml *map, const char *key, double axes[2]) {
+    const sn_yaml *node;
+    SN_TRY(sn_yaml_need(map, key, &node));
+    SN_TRY(sn_yaml_quantities(node, "m", 2, axes));
+    for (const sn_yaml *item = node->first; item; item = item->next)
+        if (!(axes[item->index] > 0.0))
+            return sn_yaml_expected(item, SN_E_RANGE, "a length of more than 0");
+    return SN_OK;
+}
+
+static sn_status read_ellipsoid(const sn_yaml *map, sn_shape_def *def) {
+    static const char *const keys[] = {"inner", "outer", "base", "cells", "pattern"};
+    const sn_yaml *node;
+    def->shape = SN_SHAPE_ELLIPSOID;
+    SN_TRY(sn_yaml_map(map, keys, 5));
+    SN_TRY(read_axes(map, "inner", def->inner));
+    SN_TRY(read_axes(map, "outer", def->outer));
+    SN_TRY(sn_yaml_need(map, "base", &node));
+    SN_TRY(sn_yaml_quantity(node, "m", &def->base));
+    return read_cells(map, "[through, around, along]", def->cells);
+}
+
 static sn_status read_shape(const sn_yaml *mesh, const sn_yaml *shape, sn_case *c) {
     sn_shape_def *def = &c->shape;
     sn_status status = strcmp(shape->key, "block") == 0      ? read_block(shape, def)
                        : strcmp(shape->key, "cylinder") == 0 ? read_cylinder(shape, def)
-                                                             : read_tube(shape, def);
+                       : strcmp(shape->key, "tube") == 0     ? read_tube(shape, def)
+                                                             : read_ellipsoid(shape, def);
     SN_TRY(status);
     const sn_yaml *inside = sn_yaml_get(shape, "pattern"), *beside = sn_yaml_get(mesh, "pattern");
     if (inside && beside)
@@ -139,11 +162,7 @@ sn_status sn_case_read_mesh(const sn_yaml *node, sn_case *c) {
     }
     if (!source)
         return sn_yaml_fail(node, SN_E_KEY,
-                            "no shape, expected one of block, cylinder, tube, file");
-    if (strcmp(source->key, "ellipsoid") == 0)
-        return sn_yaml_fail(source, SN_E_UNSUPPORTED,
-                            "the built-in ellipsoid is not supported, expected block, cylinder, "
-                            "tube, or file with a Gmsh mesh");
+                            "no shape, expected one of block, cylinder, tube, ellipsoid, file");
     if (strcmp(source->key, "file") == 0) return read_file(node, source, c);
     const sn_yaml *unit = sn_yaml_get(node, "unit");
     if (unit)

@@ -1,4 +1,4 @@
-// Built-in shapes: block, tube, cylinder.
+// Built-in shapes: block, tube, cylinder, ellipsoid.
 // SPDX-License-Identifier: Apache-2.0
 //
 // A shape gives nodes, tetrahedra and, for each node, one bit a surface it lies on.
@@ -195,6 +195,40 @@ static sn_status build_tube(const sn_shape_def *def, sn_mesh **mesh) {
     return build_lattice(def, true, place_tube, name, mesh);
 }
 
+// Places the points of the disc on every level, and marks the surfaces they lie on.
+typedef void place_levels(const sn_shape_def *def, int points, const double *point,
+                          unsigned char *on, double *x);
+
+// A disc of `radial` rings, extruded in `layers` layers; three surfaces.
+static sn_status build_over_disc(const sn_shape_def *def, int radial, int layers,
+                                 place_levels *place, const char *const *name, sn_mesh **mesh) {
+    const int around = def->cells[1];
+    // a ring has 3 points at least, so this many rings are too many whatever they hold
+    SN_TRY(check_total(def->cells, 6.0 * radial, 0));
+    double wide_points = sn_disc_point_count(radial, around);
+    double wide_triangles = sn_disc_triangle_count(radial, around);
+    SN_TRY(check_total(def->cells, 3 * wide_triangles * layers, wide_points * (layers + 1.0)));
+
+    int points = (int)wide_points, triangles = (int)wide_triangles;
+    size_t nodes = (size_t)points * ((size_t)layers + 1);
+    sn_status status = SN_E_MEMORY;
+    double *point = sn_alloc((size_t)points * 2, sizeof *point);
+    int *triangle = sn_alloc((size_t)triangles * 3, sizeof *triangle);
+    unsigned char *on = sn_alloc(nodes, 1);
+    if (!point || !triangle || !on) goto fail;
+    SN_TRY_GOTO(status, sn_mesh_create((int)nodes, 3 * triangles * layers, 1, 0, mesh));
+    sn_disc_cut(radial, around, point, triangle);
+    place(def, points, point, on, (*mesh)->node);
+    sn_disc_extrude(points, triangles, triangle, layers, def->pattern == SN_PATTERN_MIRRORED,
+                    (*mesh)->cell);
+    SN_TRY_GOTO(status, name_surfaces(*mesh, on, name, 3));
+fail:
+    sn_free(point);
+    sn_free(triangle);
+    sn_free(on);
+    return status;
+}
+
 static void place_cylinder(const sn_shape_def *def, int points, const double *point,
                            unsigned char *on, double *x) {
     int rim = points - def->cells[1];
@@ -216,31 +250,59 @@ static sn_status build_cylinder(const sn_shape_def *def, sn_mesh **mesh) {
         return sn_fail(SN_E_UNSUPPORTED,
                        "pattern bcc is not possible in a cylinder, whose cells are "
                        "not rectangular: take mirrored or kuhn");
-    int radial = def->cells[0], around = def->cells[1], along = def->cells[2];
-    // a ring has 3 points at least, so this many rings are too many whatever they hold
-    SN_TRY(check_total(def->cells, 6.0 * radial, 0));
-    double wide_points = sn_disc_point_count(radial, around);
-    double wide_triangles = sn_disc_triangle_count(radial, around);
-    SN_TRY(check_total(def->cells, 3 * wide_triangles * along, wide_points * (along + 1.0)));
+    return build_over_disc(def, def->cells[0], def->cells[2], place_cylinder, name, mesh);
+}
 
-    int points = (int)wide_points, triangles = (int)wide_triangles;
-    size_t nodes = (size_t)points * ((size_t)along + 1);
-    sn_status status = SN_E_MEMORY;
-    double *point = sn_alloc((size_t)points * 2, sizeof *point);
-    int *triangle = sn_alloc((size_t)triangles * 3, sizeof *triangle);
-    unsigned char *on = sn_alloc(nodes, 1);
-    if (!point || !triangle || !on) goto fail;
-    SN_TRY_GOTO(status, sn_mesh_create((int)nodes, 3 * triangles * along, 1, 0, mesh));
-    sn_disc_cut(radial, around, point, triangle);
-    place_cylinder(def, points, point, on, (*mesh)->node);
-    sn_disc_extrude(points, triangles, triangle, along, def->pattern == SN_PATTERN_MIRRORED,
-                    (*mesh)->cell);
-    SN_TRY_GOTO(status, name_surfaces(*mesh, on, name, 3));
-fail:
-    sn_free(point);
-    sn_free(triangle);
-    sn_free(on);
-    return status;
+// Angle of the cut from the apex, seen in the circle that a half axis `end` along z scales.
+static double angle_of_base(double base, double end) {
+    return acos(-base / end);
+}
+
+// A disc of meridians and circles, bent over the wall: the rim is the base.
+static void place_ellipsoid(const sn_shape_def *def, int points, const double *point,
+                            unsigned char *on, double *x) {
+    const int layers = def->cells[0], rim = points - def->cells[1];
+    for (int k = 0; k <= layers; k++) {
+        const double s = (double)k / layers;
+        const double side = (1 - s) * def->inner[0] + s * def->outer[0];
+        const double end = (1 - s) * def->inner[1] + s * def->outer[1];
+        const double last = angle_of_base(def->base, end);
+        for (int p = 0; p < points; p++, x += 3) {
+            const double *at = point + 2 * (size_t)p, radius = hypot(at[0], at[1]);
+            // on the rim the radius is 1 but for rounding, and z is the base's
+            const double angle = p >= rim ? last : radius * last;
+            const double out = radius > 0 ? side * sin(angle) / radius : 0;
+            x[0] = out * at[0];
+            x[1] = out * at[1];
+            x[2] = p >= rim ? def->base : -end * cos(angle);
+            *on++ = (unsigned char)((k == 0) | (k == layers) << 1 | (p >= rim) << 2);
+        }
+    }
+}
+
+static sn_status build_ellipsoid(const sn_shape_def *def, sn_mesh **mesh) {
+    static const char *const name[] = {"inner", "outer", "base"};
+    static const char wall_name[3][8] = {"through", "around", "along"};
+    static const char *const axis[] = {"short", "long"};
+    for (int k = 0; k < 2; k++) {
+        SN_TRY(check_length(k ? "inner, long" : "inner, short", def->inner[k]));
+        SN_TRY(check_length(k ? "outer, long" : "outer, short", def->outer[k]));
+        if (def->outer[k] <= def->inner[k])
+            return sn_fail(SN_E_RANGE,
+                           "the %s half axis of the outer wall, %g m, must be larger "
+                           "than that of the inner, %g m",
+                           axis[k], def->outer[k], def->inner[k]);
+    }
+    if (!(fabs(def->base) < def->inner[1]))
+        return sn_fail(SN_E_RANGE,
+                       "base at z = %g m does not cut the inner wall, which ends at %g "
+                       "and %g m",
+                       def->base, -def->inner[1], def->inner[1]);
+    SN_TRY(check_cells(def->cells, wall_name, 3));
+    if (def->pattern == SN_PATTERN_BCC)
+        return sn_fail(SN_E_UNSUPPORTED, "pattern bcc is not possible in an ellipsoid, whose cells "
+                                         "are not rectangular: take mirrored or kuhn");
+    return build_over_disc(def, def->cells[2], def->cells[0], place_ellipsoid, name, mesh);
 }
 
 sn_status sn_mesh_build(const sn_shape_def *def, sn_mesh **mesh) {
@@ -250,6 +312,7 @@ sn_status sn_mesh_build(const sn_shape_def *def, sn_mesh **mesh) {
     case SN_SHAPE_BLOCK: status = build_block(def, mesh); break;
     case SN_SHAPE_CYLINDER: status = build_cylinder(def, mesh); break;
     case SN_SHAPE_TUBE: status = build_tube(def, mesh); break;
+    case SN_SHAPE_ELLIPSOID: status = build_ellipsoid(def, mesh); break;
     }
     if (status != SN_OK) {
         sn_mesh_destroy(*mesh);

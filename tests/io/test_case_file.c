@@ -277,7 +277,13 @@ static void bad_bodies_are_refused(void **state) {
         {MESH("block"), SN_E_SYNTAX, "key \"mesh\": found \"block\", expected a map", NULL},
         {MESH("{}"), SN_E_KEY, "key \"mesh\": no shape", NULL},
         {MESH("{bloc: {}}"), SN_E_KEY, "did you mean \"block\"?", NULL},
-        {MESH("{ellipsoid: {}}"), SN_E_UNSUPPORTED, "key \"mesh.ellipsoid\"", "not supported"},
+        {MESH("{ellipsoid: {}}"), SN_E_KEY, "key \"mesh.ellipsoid.inner\" is missing", NULL},
+        {MESH("{ellipsoid: {inner: [7 mm, 17 mm], outer: [10 mm, 20 mm], base: 18 mm, cells: [1, "
+              "8, 4]}}"),
+         SN_E_RANGE, "key \"mesh.ellipsoid\"", "does not cut"},
+        {MESH("{ellipsoid: {inner: [7 mm, 17], outer: [10 mm, 20 mm], base: 5 mm, cells: [1, 8, "
+              "4]}}"),
+         SN_E_UNIT, "key \"mesh.ellipsoid.inner[2]\"", NULL},
         {MESH("{block: {size: [1 m, 1 m, 1 m], cells: [1, 1, 1]}, file: x.msh}"), SN_E_KEY,
          "key \"mesh.file\"", "\"block\" is given too"},
         {MESH("{block: {size: [1 m, 1 m, 1 m], cells: [1, 1, 1]}, unit: mm}"), SN_E_KEY,

@@ -77,7 +77,7 @@ static void check_sound(const sn_mesh *m, double volume) {
     int *edge, edges;
     CHECK_OK(sn_mesh_edges(m, &edge, &edges));
     sn_free(edge);
-    int ring = sn_mesh_surface(m, "inner") >= 0;
+    int ring = sn_mesh_surface(m, "inner") >= 0 && sn_mesh_surface(m, "base") < 0;
     assert_int_equal(m->node_count - edges + unique - m->cell_count, ring ? 0 : 1);
 
     // closed: area vectors sum to zero; outwards: the divergence theorem gives the volume
@@ -387,11 +387,73 @@ static void bcc_tube_limit(void **state) {
     }
 }
 
+// Integral of f(u) from 0 to b by Simpson's rule, good to (b/2000)^4.
+static double simpson(double (*f)(double, const double *), const double *with, double b) {
+    enum { N = 2000 };
+    double sum = 0, h = b / N;
+    for (int k = 0; k <= N; k++) sum += (k == 0 || k == N ? 1 : k % 2 ? 4 : 2) * f(k * h, with);
+    return sum * h / 3;
+}
+static double slice(double u, const double *axis) { // pi r^2 dz, of a half ellipsoid from its apex
+    return acos(-1) * axis[0] * axis[0] * sin(u) * sin(u) * axis[1] * sin(u);
+}
+static double ring_area(double u, const double *axis) { // 2 pi r ds
+    return 2 * acos(-1) * axis[0] * sin(u) * hypot(axis[0] * cos(u), axis[1] * sin(u));
+}
+
+// The ventricle of Land's second problem, finer and finer: volume and walls approach the integrals
+// with the second order of flat facets.
+static void ellipsoids(void **state) {
+    (void)state;
+    double off[3];
+    for (int p = 0; p < 2; p++)
+        for (int k = 0; k < 3; k++) {
+            const int n = 1 << k;
+            sn_shape_def def = {.shape = SN_SHAPE_ELLIPSOID,
+                                .pattern = p ? SN_PATTERN_KUHN : SN_PATTERN_MIRRORED,
+                                .inner = {0.007, 0.017},
+                                .outer = {0.010, 0.020},
+                                .base = 0.005,
+                                .cells = {n, 12 * n, 8 * n}};
+            sn_mesh *m = build(&def);
+            const double inner = simpson(slice, def.inner, acos(-def.base / def.inner[1]));
+            const double outer = simpson(slice, def.outer, acos(-def.base / def.outer[1]));
+            double sum = sn_mesh_volume(m), vector[3];
+            check_sound(m, sum);
+            off[k] = 1 - sum / (outer - inner);
+            assert_int_equal(m->surface_count, 4);
+            const double wall = surface_area(m, sn_mesh_surface(m, "inner"), vector);
+            const double exact = simpson(ring_area, def.inner, acos(-def.base / def.inner[1]));
+            CHECK_REL(wall, exact, 0.1 / (n * n));
+            // the base is flat and faces +z
+            const double base = surface_area(m, sn_mesh_surface(m, "base"), vector);
+            CHECK_REL(vector[2], base, 1e-12);
+            sn_mesh_destroy(m);
+        }
+    assert_true(off[1] > 0 && off[1] / off[2] > 3.5 && off[1] / off[2] < 4.5);
+
+    sn_mesh *m = NULL;
+    sn_shape_def def = {.shape = SN_SHAPE_ELLIPSOID,
+                        .inner = {1, 2},
+                        .outer = {2, 3},
+                        .base = 2,
+                        .cells = {1, 8, 4}};
+    CHECK_FAILS(sn_mesh_build(&def, &m), SN_E_RANGE, "does not cut the inner wall");
+    def.base = 0, def.outer[1] = 2;
+    CHECK_FAILS(sn_mesh_build(&def, &m), SN_E_RANGE, "the long half axis of the outer wall");
+    def.outer[1] = 3, def.pattern = SN_PATTERN_BCC;
+    CHECK_FAILS(sn_mesh_build(&def, &m), SN_E_UNSUPPORTED, "bcc");
+    def.pattern = SN_PATTERN_KUHN, def.cells[1] = 2;
+    CHECK_FAILS(sn_mesh_build(&def, &m), SN_E_RANGE, "\"around\"");
+    assert_null(m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks),
         cmocka_unit_test(tubes),
         cmocka_unit_test(cylinders),
+        cmocka_unit_test(ellipsoids),
         cmocka_unit_test(symmetric_stars),
         cmocka_unit_test(mirrored_is_not_kuhn),
         cmocka_unit_test(refusals),
