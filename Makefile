@@ -17,6 +17,9 @@ check: ## installs what is missing, then all tests: style, includes, warnings, u
 verify: all ## long verification runs
 	@scripts/verify.sh build/sinew
 
+figures: all ## figures of the manual, from the command's own output
+	@scripts/figures.sh build/sinew
+
 install: all ## headers, libraries, command, sinew.pc, CMake package (PREFIX, DESTDIR)
 	@cmake --install build $(if $(PREFIX),--prefix $(PREFIX))
 
@@ -26,5 +29,5 @@ clean:
 help:
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
 
-.PHONY: all demo check verify install clean help
+.PHONY: all demo check verify figures install clean help
 $(shell mkdir -p build)

@@ -22,8 +22,8 @@ typedef enum sn_protocol_kind {
     SN_PROTOCOL_SHEAR
 } sn_protocol_kind;
 
-/// How a cyclic test goes from 1 to the target and back: straight, or as (1 - cos)/2, drawn with
-/// 100 straight lines a way.
+/// How a cycle goes to the target and back: straight, or as (1 - cos)/2, drawn with 100 straight
+/// lines a way.
 typedef enum sn_wave { SN_WAVE_TRIANGLE, SN_WAVE_SINE } sn_wave;
 
 /// What the machine does. Fill from sn_protocol_default().
@@ -37,10 +37,13 @@ typedef struct sn_protocol {
     double stress;               ///< nominal stress that is held, Pa (creep)
     double stretch_1, stretch_2; ///< targets along two axes (biaxial) [1]
     double shear;                ///< target shear strain [1]
-    double from, to; ///< ends of a sweep: ramp time, s (hysteresis), or frequency, Hz (dynamic)
-    int cycles;      ///< 1 -> target -> 1 (cyclic)
-    sn_wave wave;    ///< of a cycle; triangle by default (cyclic)
-    int points;      ///< rows of the curve
+    double from, to;  ///< ends of a sweep: ramp time, s (hysteresis), or frequency, Hz (dynamic)
+    double lower;     ///< stretch where a cycle starts and ends; the specimen is brought there from
+                      ///< 1 at the speed of a straight cycle (cyclic) [1]
+    int cycles;       ///< recorded: lower -> target -> lower (cyclic)
+    int precondition; ///< cycles before those that are recorded (cyclic)
+    sn_wave wave;     ///< of a cycle; triangle by default (cyclic)
+    int points;       ///< rows of the curve
 } sn_protocol;
 #define SN_PROTOCOL_PARAMS_MAX 12 ///< most parameters of one protocol
 
@@ -53,34 +56,44 @@ SN_API const sn_param *sn_protocol_params(sn_protocol_kind kind, int *count);
 SN_API sn_protocol sn_protocol_default(sn_protocol_kind kind);
 /// Sets a parameter by its name in the protocol's table. @return SN_OK, SN_E_NAME.
 SN_API sn_status sn_protocol_set(sn_protocol *protocol, const char *name, double value);
+/// Value of a parameter by its name in the protocol's table. NAN when it has none of that name.
+SN_API double sn_protocol_get(const sn_protocol *protocol, const char *name);
 /// The stretch over time of a tensile, cyclic or relaxation test, and the times at which the
 /// machine records (in *time, sn_alloc'd, protocol->points of them; relaxation spaces them by the
-/// logarithm after the ramp).
+/// logarithm after the ramp). A cyclic record begins with its first cycle after preconditioning;
+/// its times count from the start of the test.
 SN_API sn_status sn_protocol_history(const sn_protocol *protocol, sn_history **stretch,
                                      double **time);
 
 /// Uniaxial test of a tissue with free sides: nominal stress at n times under a stretch history
 /// that starts at t = history->time[0] from rest. A stretch of other than 1 at the start is a step.
-/// Solid laws solve their lateral stretch (incompressible or not); memory acts as in tissue.h. A
-/// uniaxial law uses T (nominal) with the hereditary integral on T (equation 33 in one dimension).
-/// Accurate to 1e-7 of the peak: steps are halved until that holds.
+/// Solid laws solve their lateral stretch (incompressible or not), membrane laws are strips along
+/// their first axis with a free side (S22 = 0); memory acts as in tissue.h. A uniaxial law uses T
+/// (nominal) with the hereditary integral on T (equation 33 in one dimension). Accurate to 1e-7 of
+/// the peak: steps are halved until that holds.
 /// @param stress  nominal stress, Pa                                        (n)
-/// @return SN_OK, SN_E_UNSUPPORTED (membrane law), SN_E_RANGE, SN_E_SOLVER, SN_E_MEMORY.
+/// @return SN_OK, SN_E_UNSUPPORTED (a law that shears under the pull), SN_E_RANGE, SN_E_SOLVER,
+/// SN_E_MEMORY.
 SN_API sn_status sn_lab_uniaxial(const sn_tissue *tissue, const sn_history *stretch, int n,
                                  const double *time, double *stress);
 /// Creep test with free sides: stretch at n times under a history of nominal stress that starts at
-/// t = stress->time[0] from rest. A stress of other than 0 at the start is a step. Uniaxial laws
-/// and incompressible solids that are alike across the pull. Accurate to 1e-7 of the largest
-/// strain.
+/// t = stress->time[0] from rest. A stress of other than 0 at the start is a step. All laws, as in
+/// sn_lab_uniaxial(). Accurate to 1e-7 of the largest strain.
 /// @param stretch  [1]                                                      (n)
-/// @return SN_OK, SN_E_UNSUPPORTED (other laws), SN_E_DATA (time), SN_E_SOLVER (the specimen gives
-/// way under the stress, no convergence), SN_E_MEMORY.
+/// @return SN_OK, SN_E_UNSUPPORTED (a law that shears under the pull), SN_E_DATA (time),
+/// SN_E_SOLVER (the specimen gives way under the stress, no convergence), SN_E_MEMORY.
 SN_API sn_status sn_lab_creep(const sn_tissue *tissue, const sn_history *stress, int n,
                               const double *time, double *stretch);
 /// Runs a protocol. The columns of the record:
-///     tensile, cyclic, relaxation   time [s], stretch [1], stress [Pa] (nominal); cyclic: cycle
-///     [1] hysteresis                    frequency [Hz], hysteresis [1] dynamic frequency [Hz],
-///     storage_modulus [Pa], loss_modulus [Pa]
+///     tensile, relaxation, creep  time [s], stretch [1], stress [Pa] (nominal)
+///     cyclic                      the same and cycle [1], from precondition + 1
+///     biaxial                     time [s], stretch_1 [1], stretch_2 [1], stress_1 [Pa], stress_2
+///     shear                       time [s], shear_strain [1], shear_stress [Pa]
+///     hysteresis                  frequency [Hz], hysteresis [1]
+///     dynamic                     frequency [Hz], storage_modulus [Pa], loss_modulus [Pa]
+/// Biaxial and shear need a solid or a membrane law. Biaxial: the thickness is free. Shear: simple,
+/// F12 = shear, the thickness is held at 1 (where it stays by itself in a membrane, and no pressure
+/// enters the stress in a solid).
 /// Hysteresis is loop area over area under the loading curve of one triangle 1 -> stretch -> 1 from
 /// rest, frequency 1/(2 ramp time); it is good to 1e-6. It exceeds 1 where the tissue must be
 /// pushed back. Dynamic moduli are d(nominal stress)/d(stretch) of a small oscillation about a

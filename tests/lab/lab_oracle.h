@@ -35,6 +35,78 @@ static inline double oracle_hereditary(const sn_history *h, const sn_memory *mem
     return sum;
 }
 
+/// Brute-force convolution in equal steps, for stresses whose history must be solved for: the
+/// integral of a channel is the sum of its increments, each times the mean of G over the times that
+/// it lies back. Second order in the step. Use: at every step `history`, solve for the new values
+/// with H = history + now (value - before), `keep`.
+typedef struct oracle_march {
+    int channels, steps, done;
+    double *mean;      // of G over [k h, (k + 1) h]                     (steps)
+    double *increment; //                                                (steps x channels)
+    double history[4], before[4], now;
+} oracle_march;
+
+static inline double oracle_one(double x, const double *constants) {
+    (void)x, (void)constants;
+    return 1.0;
+}
+
+static inline oracle_march oracle_march_start(const sn_memory *memory, double seconds, int steps,
+                                              int channels) {
+    oracle_march m = {.channels = channels, .steps = steps};
+    double h = seconds / steps, last = 0.0;
+    m.mean = sn_alloc((size_t)(steps * (1 + channels)), sizeof *m.mean);
+    assert_non_null(m.mean);
+    m.increment = m.mean + steps;
+    for (int k = 0; k < steps; ++k) { // int_0^t G is the integral of a motion at unit speed
+        const double knots[] = {0.0, (k + 1) * h};
+        sn_history *ramp;
+        CHECK_OK(sn_history_create(1, 2, knots, knots, &ramp));
+        double sum = oracle_hereditary(ramp, memory, knots[1], oracle_one, NULL);
+        sn_history_destroy(ramp);
+        m.mean[k] = (sum - last) / h;
+        last = sum;
+    }
+    m.now = m.mean[0];
+    return m;
+}
+
+static inline void oracle_march_history(oracle_march *m) {
+    for (int c = 0; c < m->channels; ++c) m->history[c] = 0.0;
+    for (int k = 0; k < m->done; ++k)
+        for (int c = 0; c < m->channels; ++c)
+            m->history[c] += m->mean[m->done - k] * m->increment[k * m->channels + c];
+}
+
+static inline double oracle_march_total(const oracle_march *m, int c, double value) {
+    return m->history[c] + m->now * (value - m->before[c]);
+}
+
+static inline void oracle_march_keep(oracle_march *m, const double *value) {
+    for (int c = 0; c < m->channels; ++c) {
+        m->increment[m->done * m->channels + c] = value[c] - m->before[c];
+        m->before[c] = value[c];
+    }
+    ++m->done;
+}
+
+/// Channels of a compressible neo-Hookean solid: S11, S22, S33 distortional, K (J - 1).
+static inline void oracle_neo_hookean(double mu, double K, const double l[3], double value[4]) {
+    double J = l[0] * l[1] * l[2], i1 = l[0] * l[0] + l[1] * l[1] + l[2] * l[2];
+    for (int i = 0; i < 3; ++i)
+        value[i] = mu * pow(J, -2.0 / 3.0) * (1.0 - i1 / 3.0 / (l[i] * l[i]));
+    value[3] = K * (J - 1.0);
+}
+
+/// Nominal stress along axis i at trial stretches of it.
+static inline double oracle_neo_hookean_stress(const oracle_march *m, double mu, double K,
+                                               const double l[3], int i) {
+    double value[4];
+    oracle_neo_hookean(mu, K, l, value);
+    return l[i] * oracle_march_total(m, i, value[i]) +
+           oracle_march_total(m, 3, value[3]) * l[0] * l[1] * l[2] / l[i];
+}
+
 /// Standard normal deviates (Box-Muller).
 static inline double oracle_normal(uint64_t *seed) {
     double u = check_random(seed, 1e-12, 1.0), v = check_random(seed, 0.0, 1.0);

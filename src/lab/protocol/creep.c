@@ -6,7 +6,8 @@
 // integrals are affine in what they are at its end, H[f] = a f + b, and the equation for the new
 // stretch is one of the elastic law alone; Newton solves it. That is of second order for any
 // relaxation time (first under a Voigt memory, whose rate is a backward difference); Romberg's
-// table removes the powers, as in uniaxial.c.
+// table removes the powers, as in uniaxial.c. A solid whose sides must be solved for as well is the
+// block of lateral.c, loaded on its first face.
 //
 // After a corner of the load the stretch moves on every time scale of the memory, so each straight
 // piece of the load is cut at the times that halve towards its start, 24 times.
@@ -36,16 +37,21 @@ static sn_status trial(const specimen *s, double L, double value[CHANNELS], doub
     double df[CHANNELS], total[CHANNELS];
     if (s->pull == SN_PULL_UNIAXIAL)
         sn_law_uniaxial(s->tissue->law, s->tissue->value, s->tissue->terms, 1, &L, NULL, value, df);
+    else if (s->pull == SN_PULL_STRIP)
+        SN_TRY(sn_pull_strip(s->tissue, 1, &L, value, df));
     else
         SN_TRY(sn_pull_closed(s->tissue, 1, &L, value, df));
     for (int c = 0; c < s->channels; ++c) total[c] = s->a * value[c] + s->b[c];
     if (s->pull == SN_PULL_UNIAXIAL) {
         *stress = total[0];
         *slope = s->a * df[0];
-        return SN_OK;
+    } else if (s->pull == SN_PULL_STRIP) {
+        *stress = L * total[0];
+        *slope = total[0] + s->a * L * df[0];
+    } else {
+        *stress = L * total[0] - total[1] / (L * L);
+        *slope = total[0] + 2.0 * total[1] / (L * L * L) + s->a * (L * df[0] - df[1] / (L * L));
     }
-    *stress = L * total[0] - total[1] / (L * L);
-    *slope = total[0] + 2.0 * total[1] / (L * L * L) + s->a * (L * df[0] - df[1] / (L * L));
     return SN_OK;
 }
 
@@ -101,10 +107,24 @@ static sn_status step(specimen *s, double h, const double *decay, const double *
     return SN_OK;
 }
 
+// a block that is loaded on its first face
+static sn_status stretch_of_block(const sn_path *path, const sn_tissue *tissue,
+                                  const sn_exponentials *e, int level, double *stretch) {
+    const sn_faces loaded_faces = {.per = {1.0, 0.0, 0.0}};
+    sn_block_row *row = sn_alloc((size_t)path->count, sizeof *row);
+    if (!row) return SN_E_MEMORY;
+    sn_status status = sn_path_block(path, tissue, &loaded_faces, e, level, row);
+    for (int r = 0; status == SN_OK && r < path->records; ++r)
+        stretch[r] = path->record[r] < 0 ? 1.0 : row[path->record[r]].stretch[0];
+    sn_free(row);
+    return status;
+}
+
 sn_status sn_path_stretch(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                           const sn_exponentials *e, int level, double *stretch) {
     specimen s = {.tissue = tissue, .pull = pull, .e = e};
-    s.channels = pull == SN_PULL_UNIAXIAL ? 1 : 2;
+    if (pull == SN_PULL_LATERAL) return stretch_of_block(path, tissue, e, level, stretch);
+    s.channels = pull == SN_PULL_CLOSED ? 2 : 1;
     double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX];
     double *at_instant = sn_alloc((size_t)path->count, sizeof *at_instant);
     if (!at_instant) return SN_E_MEMORY;
@@ -171,11 +191,6 @@ sn_status sn_lab_creep(const sn_tissue *tissue, const sn_history *stress, int n,
     int count;
     double change = (double)NAN, *t = NULL, *strain = NULL;
     SN_TRY(sn_pull_choose(tissue, &pull));
-    if (pull == SN_PULL_LATERAL)
-        return sn_fail(SN_E_UNSUPPORTED,
-                       "law %s: a creep test needs a uniaxial law, or an incompressible solid that "
-                       "is alike across the pull (bulk_modulus: incompressible)",
-                       tissue->law->name);
     SN_TRY(sn_memory_expand(&tissue->memory, &e));
     sn_status status = SN_E_MEMORY;
     t = graded_times(stress, n, time, &count);

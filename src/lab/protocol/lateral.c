@@ -1,141 +1,199 @@
-// Hereditary stress of a solid whose lateral stretches must be solved for.
+// Hereditary stress of a block of a solid, some of whose stretches must be solved for.
 // SPDX-License-Identifier: Apache-2.0
-// Source: equations (33)-(35) with (32); free sides, S22 = S33 = 0.
+// Source: equations (33)-(35) with (32); a face is held at a stretch or loaded with a stress.
 //
-// Compressible:    S = H[S_d] + H[K (J - 1)] J C^-1, both lateral stretches unknown.
-// Incompressible:  S = H[S_d] - p C^-1, J = 1; the sides differ (orthotropic laws), so one lateral
-//                  stretch is unknown and the condition is that both sides give the same p.
+// Nominal stress on the face across axis i, H the hereditary integral, l the stretches:
+//     compressible:    T_i = l_i H[S_ii] + H[K (J - 1)] J/l_i, every stretch that is not held
+//     unknown incompressible:  T_i = l_i H[S_ii] - p/l_i,  l3 = 1/(l1 l2): the third face is always
+//     free of
+//                      load, so p = l3^2 H[S_33] (pulled along one axis the sides of an orthotropic
+//                      law differ, and that both give the same p is the condition for l2).
 // The recursion for a step is affine in the new stress, H[S] = a S_new + b, so a trial of the
-// lateral stretches costs one evaluation of the law and touches no memory variable. Newton on the
-// logarithms of the stretches with differences for the 2 x 2 matrix: they need no tangent of the
-// volume term and the three points go to the law in one call. Steps are of second order; the
-// callers refine.
+// stretches costs one evaluation of the law and touches no memory variable. Newton on the
+// logarithms of the stretches with differences for the matrix: they need no tangent of the volume
+// term and all points go to the law in one call. Steps are of second order; the callers refine.
 #include <math.h>
 #include <string.h>
 
 #include "lab/protocol/path.h"
 
-enum { CHANNELS = 4 }; // S11, S22, S33 distortional, and K (J - 1)
-static const int newton_max = 40;
+enum { CHANNELS = 4, TRIALS = 4 }; // S11, S22, S33 distortional, and K (J - 1)
+static const int newton_max = 100;
 static const double difference = 1e-6; // of a logarithm: balances rounding against curvature
 
-typedef struct puller {
+typedef struct block {
     const sn_tissue *tissue;
+    const sn_faces *faces;
     const sn_exponentials *e;
-    double bulk; // INFINITY: incompressible
-    double time, stretch;
-    double log_lateral[2];
+    double bulk;                      // INFINITY: incompressible
+    int unknowns, unknown[3];         // faces whose stretch is solved for
+    double time, target[3];           // stretches of held faces, loads of the others, Pa
+    double y[3];                      // logarithms of the stretches
     double value[CHANNELS];           // elastic, at the end of the last step
     double H[CHANNELS][SN_TERMS_MAX]; // shares of the exponentials
     double a, b[CHANNELS];            // affine map of the step at hand
-} puller;
+} block;
 
-static int unknowns(const puller *p) {
-    return isinf(p->bulk) ? 1 : 2;
+// a trial of the stretches and what comes of it
+typedef struct trial {
+    double y[3];
+    double value[CHANNELS]; // elastic channels
+    double stretch[3], nominal[3];
+    double residual[3]; // of the unknown faces, times their stretch
+} trial;
+
+static void stretches_of(const block *p, trial *t) {
+    for (int i = 0; i < 3; ++i) t->stretch[i] = p->faces->held[i] ? p->target[i] : exp(t->y[i]);
+    if (isinf(p->bulk)) t->stretch[2] = 1.0 / (t->stretch[0] * t->stretch[1]);
 }
 
-// lateral stretches of a trial
-static void lateral(const puller *p, double stretch, const double *y, double out[2]) {
-    out[0] = exp(y[0]);
-    out[1] = isinf(p->bulk) ? 1.0 / (stretch * out[0]) : exp(y[1]);
-}
-
-// elastic channels and total stresses at n trials; residual (2 x n), axial nominal stress (n)
-static void trials(const puller *p, double stretch, int n, double y[][2], double value[][CHANNELS],
-                   double residual[][2], double *nominal) {
-    double E[6 * 3] = {0}, S[6 * 3];
-    SN_ASSERT(n <= 3);
+// elastic channels, total stresses and residuals at n trials
+static void evaluate(const block *p, int n, trial *t) {
+    double E[6 * TRIALS] = {0}, S[6 * TRIALS];
+    SN_ASSERT(n <= TRIALS);
     for (int i = 0; i < n; ++i) {
-        double side[2];
-        lateral(p, stretch, y[i], side);
-        E[i] = 0.5 * (stretch * stretch - 1.0);
-        E[n + i] = 0.5 * (side[0] * side[0] - 1.0);
-        E[2 * n + i] = 0.5 * (side[1] * side[1] - 1.0);
+        stretches_of(p, &t[i]);
+        for (int c = 0; c < 3; ++c) {
+            double l = t[i].stretch[c];
+            E[c * n + i] = 0.5 * (l - 1.0) * (l + 1.0);
+        }
     }
     sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, n, E, NULL, S, NULL);
     for (int i = 0; i < n; ++i) {
-        double side[2], total[CHANNELS];
-        lateral(p, stretch, y[i], side);
-        double J = stretch * side[0] * side[1];
-        for (int c = 0; c < 3; ++c) value[i][c] = S[c * n + i];
-        value[i][3] = isinf(p->bulk) ? 0.0 : sn_volume_stress(p->bulk, J);
-        for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * value[i][c] + p->b[c];
-        double s22 = total[1] * side[0] * side[0], s33 = total[2] * side[1] * side[1];
-        if (isinf(p->bulk)) {
-            residual[i][0] = s22 - s33;
-            residual[i][1] = 0.0;
-            nominal[i] = stretch * total[0] - s33 / stretch;
-        } else {
-            residual[i][0] = s22 + total[3] * J;
-            residual[i][1] = s33 + total[3] * J;
-            nominal[i] = stretch * total[0] + total[3] * J / stretch;
+        const double *l = t[i].stretch;
+        double J = l[0] * l[1] * l[2], total[CHANNELS];
+        for (int c = 0; c < 3; ++c) t[i].value[c] = S[c * n + i];
+        // U'(J) = K (J - 1) from the logarithm of J: J - 1 itself drowns the rates of stiff solids
+        double log_volume = t[i].y[0] + t[i].y[1] + t[i].y[2];
+        t[i].value[3] = isinf(p->bulk) ? 0.0 : p->bulk * expm1(log_volume);
+        for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * t[i].value[c] + p->b[c];
+        double pressure = isinf(p->bulk) ? l[2] * l[2] * total[2] : -total[3] * J;
+        for (int c = 0; c < 3; ++c) t[i].nominal[c] = l[c] * total[c] - pressure / l[c];
+        for (int j = 0; j < p->unknowns; ++j) {
+            int c = p->unknown[j];
+            t[i].residual[j] = l[c] * (t[i].nominal[c] - p->target[c]);
         }
     }
 }
 
-// Newton's change of the unknowns from residuals at a point and at a difference in each unknown
-static bool newton_change(int n, double residual[][2], double change[2]) {
-    double A[2][2] = {{1.0, 0.0}, {0.0, 1.0}};
+// A x = -r for n <= 3 unknowns by Gauss with pivots; A is used up
+static void solve_small(int n, double A[3][3], const double *r, double *x) {
+    for (int i = 0; i < n; ++i) x[i] = -r[i];
+    for (int k = 0; k < n; ++k) {
+        int best = k;
+        for (int i = k + 1; i < n; ++i)
+            if (fabs(A[i][k]) > fabs(A[best][k])) best = i;
+        double swap = x[k];
+        x[k] = x[best], x[best] = swap;
+        for (int j = 0; j < n; ++j) swap = A[k][j], A[k][j] = A[best][j], A[best][j] = swap;
+        for (int i = k + 1; i < n; ++i) {
+            double f = A[i][k] / A[k][k];
+            for (int j = k; j < n; ++j) A[i][j] -= f * A[k][j];
+            x[i] -= f * x[k];
+        }
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        for (int j = k + 1; j < n; ++j) x[k] -= A[k][j] * x[j];
+        x[k] /= A[k][k];
+    }
+}
+
+// Newton's change of the unknowns from a trial and those at a difference in each unknown; its
+// largest, not finite where there is none
+static double newton_change(int n, const trial *t, double change[3]) {
+    double A[3][3];
     for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) A[i][j] = (residual[j + 1][i] - residual[0][i]) / difference;
-    double det = A[0][0] * A[1][1] - A[0][1] * A[1][0];
-    change[0] = -(A[1][1] * residual[0][0] - A[0][1] * residual[0][1]) / det;
-    change[1] = -(A[0][0] * residual[0][1] - A[1][0] * residual[0][0]) / det;
-    double size = fmax(fabs(change[0]), fabs(change[1]));
-    if (!isfinite(size)) return false;
-    double limit = 0.1; // a tenth of the stretch a go: the law stays in its domain
-    if (size > limit)
-        for (int i = 0; i < 2; ++i) change[i] *= limit / size;
-    return true;
+        for (int i = 0; i < n; ++i)
+            A[i][j] = (t[j + 1].residual[i] - t[0].residual[i]) / difference;
+    solve_small(n, A, t[0].residual, change);
+    double size = 0.0, limit = 0.1; // a tenth of the stretch a go: the law stays in its domain
+    for (int i = 0; i < n; ++i)
+        size = isfinite(change[i]) ? fmax(size, fabs(change[i])) : (double)INFINITY;
+    for (int i = 0; i < n && size > limit; ++i) change[i] *= limit / size;
+    return size;
 }
 
-// solves the sides at `stretch`; leaves elastic values in `value` and the nominal stress in
-// *nominal
-static sn_status solve_sides(puller *p, double stretch, double value[CHANNELS], double *nominal) {
-    int n = unknowns(p);
-    double y[3][2], values[3][CHANNELS], residual[3][2], stress[3], change[2] = {0.0, 0.0};
-    memcpy(y[0], p->log_lateral, sizeof y[0]);
-    for (int iteration = 0; iteration < newton_max; ++iteration) {
-        for (int j = 0; j < n; ++j) {
-            memcpy(y[j + 1], y[0], sizeof y[0]);
-            y[j + 1][j] += difference;
-        }
-        trials(p, stretch, n + 1, y, values, residual, stress);
-        if (!newton_change(n, residual, change)) break;
-        double size = fmax(fabs(change[0]), fabs(change[1]));
-        for (int j = 0; j < n; ++j) y[0][j] += change[j];
-        if (size > 1e-11) continue; // the matrix is good to 1e-6: what remains is 1e-17
-        trials(p, stretch, 1, y, values, residual, stress);
-        memcpy(p->log_lateral, y[0], sizeof y[0]);
-        memcpy(value, values[0], sizeof values[0]);
-        *nominal = stress[0];
-        return SN_OK;
-    }
+static sn_status no_equilibrium(const block *p) {
+    for (int i = 0; i < 3; ++i)
+        if (!p->faces->held[i] && p->target[i] != 0.0)
+            return sn_fail(SN_E_SOLVER,
+                           "law %s: at %g s no stretch near %g carries a nominal stress of %g Pa: "
+                           "the specimen gives way; use a smaller stress or a shorter test",
+                           p->tissue->law->name, p->time, exp(p->y[i]), p->target[i]);
     return sn_fail(SN_E_SOLVER,
                    "law %s: the free sides at stretch %g, %g s have no equilibrium near lateral "
-                   "stretch %g (last change %g): check the constants",
-                   p->tissue->law->name, stretch, p->time, exp(p->log_lateral[0]), change[0]);
+                   "stretch %g: check the constants",
+                   p->tissue->law->name, p->target[0], p->time, exp(p->y[p->unknown[0]]));
 }
 
-static sn_status start(puller *p, const sn_path *path, double *nominal) {
-    const sn_exponentials *e = p->e;
-    double guess = -0.5 * log(path->stretch[0]), value[CHANNELS];
-    p->time = path->time[0];
-    p->stretch = path->stretch[0];
-    p->log_lateral[0] = p->log_lateral[1] = guess;
-    p->a = 1.0; // a step from rest: G(0) = 1
-    SN_TRY(solve_sides(p, p->stretch, value, nominal));
-    for (int c = 0; c < CHANNELS; ++c) {
-        p->value[c] = value[c];
-        for (int i = 0; i < e->terms; ++i) p->H[c][i] = e->g[i] * value[c];
+// solves for the unknown stretches; *now is the equilibrium
+static sn_status solve(block *p, trial *now) {
+    trial t[TRIALS];
+    double change[3];
+    int n = p->unknowns;
+    memcpy(t[0].y, p->y, sizeof p->y);
+    for (int iteration = 0; iteration < newton_max; ++iteration) {
+        for (int j = 0; j < n; ++j) {
+            memcpy(t[j + 1].y, t[0].y, sizeof t[0].y);
+            t[j + 1].y[p->unknown[j]] += difference;
+        }
+        evaluate(p, n + 1, t);
+        double size = newton_change(n, t, change);
+        if (!isfinite(size)) break;
+        for (int j = 0; j < n; ++j) t[0].y[p->unknown[j]] += change[j];
+        if (size > 1e-11) continue; // the matrix is good to 1e-6: what remains is 1e-17
+        evaluate(p, 1, t);
+        for (int i = 0; i < 3; ++i) p->y[i] = log(t[0].stretch[i]);
+        *now = t[0];
+        return SN_OK;
     }
+    return no_equilibrium(p);
+}
+
+// Where the faces are at the driving number u. What is held moves the first guess of the others, at
+// constant volume.
+static void drive(block *p, double u) {
+    double moved = 0.0;
+    int held = 0;
+    for (int i = 0; i < 3; ++i) {
+        p->target[i] = p->faces->at[i] + p->faces->per[i] * u;
+        if (!p->faces->held[i]) continue;
+        double y = log(p->target[i]);
+        moved += y - p->y[i];
+        p->y[i] = y;
+        ++held;
+    }
+    for (int i = 0; i < 3 && held > 0; ++i)
+        if (!p->faces->held[i]) p->y[i] -= moved / (3 - held);
+}
+
+static void keep(const trial *t, sn_block_row *row) {
+    memcpy(row->stretch, t->stretch, sizeof row->stretch);
+    memcpy(row->stress, t->nominal, sizeof row->stress);
+}
+
+static sn_status start(block *p, const sn_path *path, sn_block_row *row) {
+    const sn_exponentials *e = p->e;
+    trial now;
+    p->time = path->time[0];
+    drive(p, path->stretch[0]);
+    for (int i = 0; i < 3 && e->viscous > 0.0; ++i) // a dashpot holds against a jump of the load
+        if (!p->faces->held[i]) p->target[i] = 0.0;
+    p->a = 1.0; // a step from rest: G(0) = 1
+    SN_TRY(solve(p, &now));
+    for (int c = 0; c < CHANNELS; ++c) {
+        p->value[c] = now.value[c];
+        for (int i = 0; i < e->terms; ++i) p->H[c][i] = e->g[i] * now.value[c];
+    }
+    keep(&now, row);
     return SN_OK;
 }
 
-static sn_status step(puller *p, double time, double stretch, double *nominal) {
+static sn_status step(block *p, double time, double u, sn_block_row *row) {
     const sn_exponentials *e = p->e;
-    double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX], value[CHANNELS];
+    double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX];
     double h = time - p->time, viscous = e->viscous / h;
+    trial now;
     sn_exponentials_factors(e, h, decay, gain);
     p->a = e->g_inf + viscous;
     for (int i = 0; i < e->terms; ++i) p->a += gain[i];
@@ -143,16 +201,15 @@ static sn_status step(puller *p, double time, double stretch, double *nominal) {
         p->b[c] = -viscous * p->value[c];
         for (int i = 0; i < e->terms; ++i) p->b[c] += decay[i] * p->H[c][i] - gain[i] * p->value[c];
     }
-    double guess = log(stretch / p->stretch);
-    for (int j = 0; j < 2; ++j) p->log_lateral[j] -= 0.5 * guess;
     p->time = time;
-    SN_TRY(solve_sides(p, stretch, value, nominal));
+    drive(p, u);
+    SN_TRY(solve(p, &now));
     for (int c = 0; c < CHANNELS; ++c) {
         for (int i = 0; i < e->terms; ++i)
-            p->H[c][i] = decay[i] * p->H[c][i] + gain[i] * (value[c] - p->value[c]);
-        p->value[c] = value[c];
+            p->H[c][i] = decay[i] * p->H[c][i] + gain[i] * (now.value[c] - p->value[c]);
+        p->value[c] = now.value[c];
     }
-    p->stretch = stretch;
+    keep(&now, row);
     return SN_OK;
 }
 
@@ -169,27 +226,37 @@ static int parts_of(const sn_path *path, int k, int level, double *alpha) {
     return level * (int)fmax(1.0 + ceil(*alpha), parts);
 }
 
-sn_status sn_path_stress_lateral(const sn_path *path, const sn_tissue *tissue,
-                                 const sn_exponentials *e, int level, double *stress) {
+sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_faces *faces,
+                        const sn_exponentials *e, int level, sn_block_row *row) {
     sn_moduli moduli;
     tissue->law->moduli(tissue->value, tissue->terms, &moduli);
-    puller p = {.tissue = tissue, .e = e, .bulk = moduli.bulk};
-    double *at_instant = sn_alloc((size_t)path->count, sizeof *at_instant);
-    if (!at_instant) return SN_E_MEMORY;
-    sn_status status = start(&p, path, &at_instant[0]);
-    for (int k = 0; status == SN_OK && k + 1 < path->count; ++k) {
-        double alpha, t0 = path->time[k], l0 = path->stretch[k];
+    block p = {.tissue = tissue, .faces = faces, .e = e, .bulk = moduli.bulk};
+    for (int i = 0; i < (isinf(moduli.bulk) ? 2 : 3); ++i)
+        if (!faces->held[i]) p.unknown[p.unknowns++] = i;
+    SN_TRY(start(&p, path, &row[0]));
+    for (int k = 0; k + 1 < path->count; ++k) {
+        double alpha, t0 = path->time[k], u0 = path->stretch[k];
         int parts = parts_of(path, k, level, &alpha);
-        for (int j = 1; status == SN_OK && j <= parts; ++j) {
+        for (int j = 1; j <= parts; ++j) {
             double part = (double)j / parts;
             double u = alpha > 0.0 ? expm1(alpha * part) / expm1(alpha) : part;
             if (j == parts) u = 1.0;
             double t = j == parts ? path->time[k + 1] : t0 + u * (path->time[k + 1] - t0);
-            status = step(&p, t, l0 + u * (path->stretch[k + 1] - l0), &at_instant[k + 1]);
+            SN_TRY(step(&p, t, u0 + u * (path->stretch[k + 1] - u0), &row[k + 1]));
         }
     }
+    return SN_OK;
+}
+
+const sn_faces sn_faces_pulled = {.held = {true, false, false}, .per = {1.0, 0.0, 0.0}};
+
+sn_status sn_path_stress_lateral(const sn_path *path, const sn_tissue *tissue,
+                                 const sn_exponentials *e, int level, double *stress) {
+    sn_block_row *row = sn_alloc((size_t)path->count, sizeof *row);
+    if (!row) return SN_E_MEMORY;
+    sn_status status = sn_path_block(path, tissue, &sn_faces_pulled, e, level, row);
     for (int r = 0; status == SN_OK && r < path->records; ++r)
-        stress[r] = path->record[r] < 0 ? 0.0 : at_instant[path->record[r]];
-    sn_free(at_instant);
+        stress[r] = path->record[r] < 0 ? 0.0 : row[path->record[r]].stress[0];
+    sn_free(row);
     return status;
 }

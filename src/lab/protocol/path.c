@@ -96,32 +96,41 @@ void sn_path_destroy(sn_path *path) {
     sn_free(path);
 }
 
+// S under a probe strain that is alike in both lateral directions
+static sn_status probe(const sn_tissue *tissue, double S[6], double *size) {
+    const double E[6] = {0.05, -0.04, -0.04, 0.0, 0.0, 0.0};
+    sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, E, NULL, S, NULL);
+    *size = fmax(fabs(S[0]), fabs(S[1]));
+    if (isfinite(*size) && *size > 0.0) return SN_OK;
+    return sn_fail(SN_E_RANGE, "law %s gives no usable stress at a stretch of 1.05",
+                   tissue->law->name);
+}
+
+sn_status sn_pull_straight(const sn_tissue *tissue) {
+    double S[6], size;
+    SN_TRY(probe(tissue, S, &size));
+    for (int i = 3; i < 6; ++i)
+        if (fabs(S[i]) > 1e-10 * size)
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "law %s shears when it is pulled along its first axis: a test with free "
+                           "sides needs "
+                           "axes that stay at right angles",
+                           tissue->law->name);
+    return SN_OK;
+}
+
 sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull) {
     const sn_law *law = tissue->law;
-    if (law->kind == SN_LAW_UNIAXIAL) {
-        *pull = SN_PULL_UNIAXIAL;
+    if (law->kind != SN_LAW_SOLID) {
+        *pull = law->kind == SN_LAW_UNIAXIAL ? SN_PULL_UNIAXIAL : SN_PULL_STRIP;
         return SN_OK;
     }
-    if (law->kind == SN_LAW_MEMBRANE)
-        return sn_fail(SN_E_UNSUPPORTED,
-                       "law %s is a membrane: a uniaxial test needs a uniaxial or a solid law",
-                       law->name);
-    // a probe strain, alike in both lateral directions: what the stress does there decides
-    const double E[6] = {0.05, -0.04, -0.04, 0.0, 0.0, 0.0};
-    double S[6];
-    sn_law_solid(law, tissue->value, tissue->terms, 1, E, NULL, S, NULL);
-    double size = fmax(fabs(S[0]), fabs(S[1])), tiny = 1e-10 * size;
-    if (!isfinite(size) || !(size > 0.0))
-        return sn_fail(SN_E_RANGE, "law %s gives no usable stress at a stretch of 1.05", law->name);
-    if (fabs(S[3]) > tiny || fabs(S[4]) > tiny || fabs(S[5]) > tiny)
-        return sn_fail(
-            SN_E_UNSUPPORTED,
-            "law %s shears when it is pulled along its first axis: a uniaxial test needs "
-            "axes that stay at right angles",
-            law->name);
+    double S[6], size;
+    SN_TRY(sn_pull_straight(tissue));
+    SN_TRY(probe(tissue, S, &size));
     sn_moduli moduli;
     law->moduli(tissue->value, tissue->terms, &moduli);
-    bool alike = fabs(S[1] - S[2]) <= tiny;
+    bool alike = fabs(S[1] - S[2]) <= 1e-10 * size;
     *pull = isinf(moduli.bulk) && alike ? SN_PULL_CLOSED : SN_PULL_LATERAL;
     return SN_OK;
 }

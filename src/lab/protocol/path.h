@@ -29,16 +29,27 @@ void sn_path_destroy(sn_path *path); // NULL is allowed
 typedef enum sn_pull {
     SN_PULL_UNIAXIAL, ///< a uniaxial law: nominal stress is a function of the stretch
     SN_PULL_CLOSED,   ///< incompressible, both lateral directions alike: lateral stretch is known
-    SN_PULL_LATERAL   ///< the lateral stretches are solved for at every instant
+    SN_PULL_LATERAL,  ///< the lateral stretches are solved for at every instant
+    SN_PULL_STRIP     ///< a membrane: the free side follows from the stretch
 } sn_pull;
 
-/// Chooses the way. @return SN_OK, SN_E_UNSUPPORTED (membrane law; shear under a pull), SN_E_RANGE.
+/// Chooses the way. @return SN_OK, SN_E_UNSUPPORTED (shear under a pull), SN_E_RANGE.
 sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull);
+/// Refuses a solid law whose axes do not stay at right angles when they are stretched.
+/// @return SN_OK, SN_E_UNSUPPORTED, SN_E_RANGE (no usable stress).
+sn_status sn_pull_straight(const sn_tissue *tissue);
 
 /// Elastic channels S11 and S22 of SN_PULL_CLOSED, Pa, with their slopes over the stretch.
 /// @param value, slope  (2 x points). @return SN_OK or SN_E_MEMORY.
 sn_status sn_pull_closed(const sn_tissue *tissue, int points, const double *stretch, double *value,
                          double *slope);
+
+/// Elastic channel S11, Pa, of a membrane strip (SN_PULL_STRIP) with its slope over the stretch.
+/// The free side has S22 = 0 at every instant, so its hereditary integral is 0 as well: the nominal
+/// stress is L H[S11].
+/// @param value, slope  (points). @return SN_OK, SN_E_SOLVER (no free side), SN_E_MEMORY.
+sn_status sn_pull_strip(const sn_tissue *tissue, int points, const double *stretch, double *value,
+                        double *slope);
 
 /// Nominal stress, Pa, at the recorded times, with `level` times the coarsest steps. A smooth
 /// function of the tissue's constants at a given level, as a fit needs it.
@@ -47,16 +58,37 @@ sn_status sn_pull_closed(const sn_tissue *tissue, int points, const double *stre
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress);
 
-/// The part of sn_path_stress() for SN_PULL_UNIAXIAL and SN_PULL_CLOSED: error of fourth order in
+/// The part of sn_path_stress() for every way but SN_PULL_LATERAL: error of fourth order in
 /// the step, whatever the relaxation times.
 sn_status sn_path_stress_known(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                                const sn_exponentials *e, int level, double *stress);
 /// Stretch at the recorded times of a path whose driving number is the nominal stress, Pa, with
-/// `level` steps an interval. SN_PULL_UNIAXIAL and SN_PULL_CLOSED; second order in the step (first
-/// under a Voigt memory).
+/// `level` steps an interval, or what sn_path_block() takes. Second order in the step (first under
+/// a Voigt memory).
 /// @return SN_OK, SN_E_SOLVER (no stretch carries the stress), SN_E_MEMORY.
 sn_status sn_path_stretch(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                           const sn_exponentials *e, int level, double *stretch);
 /// The part of sn_path_stress() for SN_PULL_LATERAL: second order in the step.
 sn_status sn_path_stress_lateral(const sn_path *path, const sn_tissue *tissue,
                                  const sn_exponentials *e, int level, double *stress);
+
+/// The faces of a block of a solid law, across its three axes: each is held at a stretch or loaded
+/// with a nominal stress, Pa, at + per * (the path's driving number).
+typedef struct sn_faces {
+    bool held[3]; ///< at a stretch; the third face of an incompressible solid is free: load 0
+    double at[3], per[3];
+} sn_faces;
+/// Pulled along the first axis, the sides free.
+extern const sn_faces sn_faces_pulled;
+/// A block at an instant.
+typedef struct sn_block_row {
+    double stretch[3]; ///< [1]
+    double stress[3];  ///< nominal, Pa
+} sn_block_row;
+/// The block along a path, at all its instants, with `level` times the coarsest steps: the
+/// stretches that are not held are solved for. Second order in the step (first under a Voigt
+/// memory). The volume stress is a channel of its own beside those of the distortional stress.
+/// @param row                                                             (path->count)
+/// @return SN_OK, SN_E_SOLVER (no equilibrium).
+sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_faces *faces,
+                        const sn_exponentials *e, int level, sn_block_row *row);

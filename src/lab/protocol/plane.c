@@ -1,12 +1,17 @@
-// Biaxial and shear tests of incompressible solids.
+// Biaxial and shear tests: solids, incompressible or not, and membranes.
 // SPDX-License-Identifier: Apache-2.0
-// Source: equations (33)-(35) with (32); S = H[S_d] - p C^-1, H the hereditary integral, J = 1.
+// Source: equations (33)-(35) with (32); incompressible: S = H[S_d] - p C^-1, H the hereditary
+// integral, J = 1.
 //
-// Both motions are known: they are driven by u, from 0 to 1 at constant speed. The free thickness,
-// S33 = 0, gives p = l3^2 H[S33] (l3 the thickness stretch). Nominal stresses:
-//     biaxial, F = diag(l1, l2, 1/(l1 l2)):   T_i = l_i H[S_ii] - l3^2 H[S33]/l_i,  i = 1, 2
+// The motions are driven by u, from 0 to 1 at constant speed. Nominal stresses:
+//     biaxial, membrane:                      T_i = l_i H[S_ii],  i = 1, 2
+//     biaxial, incompressible, l3 = 1/(l1 l2), whose free thickness gives p = l3^2 H[S33]:
+//                                             T_i = l_i H[S_ii] - l3^2 H[S33]/l_i
+//     biaxial, compressible: the thickness is solved for, lateral.c
 //     simple shear g in the 1-2 plane:        T_12 = H[S12] + g H[S22]
-// In shear p drops out, and the nominal stress is the true one: the sheared face keeps its area.
+// Simple shear keeps the volume and the thickness, so p drops out where the solid is incompressible
+// and the volume stress is 0 at every instant where it is not: all three kinds share the line. The
+// nominal stress is the true one: the sheared face keeps its area.
 #include <math.h>
 
 #include "lab/protocol/hereditary.h"
@@ -18,6 +23,7 @@ static const double tolerance = 5e-8; // of the peak
 typedef struct plane {
     const sn_tissue *tissue;
     bool shear;
+    bool block;       // biaxial test of a compressible solid
     double target[2]; // stretches, or the shear strain
     const sn_path *path;
     const sn_exponentials *e;
@@ -49,67 +55,113 @@ static void strain_at(const plane *p, double u, double E[6], double rate[6]) {
     }
 }
 
-// place of (i, j) in the upper triangle by rows
-static size_t place(size_t i, size_t j) {
+// place of (i, j) in the upper triangle by rows of a symmetric matrix of `size` rows
+static size_t place(size_t size, size_t i, size_t j) {
     size_t low = i < j ? i : j, high = i < j ? j : i;
-    return low * (11 - low) / 2 + high;
+    return low * (2 * size - 1 - low) / 2 + high;
+}
+
+// what the law sees: strain, its rate over u, stress and tangent of `size` components
+typedef struct strained {
+    size_t size; // 6, or 3 of a membrane: 11 22 12
+    double *E, *rate, *S, *D;
+} strained;
+
+static sn_status strained_create(const plane *p, size_t n, const double *x, strained *at) {
+    static const int membrane[] = {0, 1, 3}, solid[] = {0, 1, 2, 3, 4, 5};
+    bool thin = p->tissue->law->kind == SN_LAW_MEMBRANE;
+    size_t size = thin ? 3 : 6;
+    *at = (strained){.size = size};
+    at->E = sn_alloc((3 * size + size * (size + 1) / 2) * n, sizeof *at->E);
+    if (!at->E) return SN_E_MEMORY;
+    at->rate = at->E + size * n, at->S = at->rate + size * n, at->D = at->S + size * n;
+    for (size_t i = 0; i < n; ++i) {
+        double strain[6], speed[6];
+        strain_at(p, x[i], strain, speed);
+        for (size_t j = 0; j < size; ++j) {
+            at->E[j * n + i] = strain[(thin ? membrane : solid)[j]];
+            at->rate[j * n + i] = speed[(thin ? membrane : solid)[j]];
+        }
+    }
+    const sn_tissue *t = p->tissue;
+    if (thin)
+        sn_law_membrane(t->law, t->value, t->terms, (int)n, at->E, NULL, at->S, at->D);
+    else
+        sn_law_solid(t->law, t->value, t->terms, (int)n, at->E, NULL, at->S, at->D);
+    return SN_OK;
+}
+
+// S12 and S22 in shear; S11, S22 and in a solid S33
+static int channels_of(const plane *p) {
+    return p->shear || p->tissue->law->kind == SN_LAW_MEMBRANE ? 2 : 3;
 }
 
 static sn_status fill(const void *context, int count, const double *x, double *value,
                       double *slope) {
-    static const size_t biaxial[] = {0, 1, 2}, sheared[] = {3, 1};
+    static const size_t biaxial[] = {0, 1, 2}, sheared[] = {3, 1}, sheared_membrane[] = {2, 1};
     const plane *p = context;
-    const size_t *component = p->shear ? sheared : biaxial;
-    size_t n = (size_t)count, channels = p->shear ? 2 : 3;
-    double *E = sn_alloc((6 + 6 + 6 + 21) * n, sizeof *E);
-    if (!E) return SN_E_MEMORY;
-    double *rate = E + 6 * n, *S = rate + 6 * n, *D = S + 6 * n;
-    for (size_t i = 0; i < n; ++i) {
-        double strain[6], speed[6];
-        strain_at(p, x[i], strain, speed);
-        for (size_t j = 0; j < 6; ++j) {
-            E[j * n + i] = strain[j];
-            rate[j * n + i] = speed[j];
-        }
-    }
-    sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, count, E, NULL, S, D);
+    size_t n = (size_t)count, channels = (size_t)channels_of(p);
+    strained at;
+    SN_TRY(strained_create(p, n, x, &at));
+    const size_t *component = !p->shear ? biaxial : at.size == 3 ? sheared_membrane : sheared;
     for (size_t c = 0; c < channels; ++c) {
         for (size_t i = 0; i < n; ++i) {
             double sum = 0.0;
-            for (size_t j = 0; j < 6; ++j)
-                sum += D[place(component[c], j) * n + i] * rate[j * n + i];
-            value[c * n + i] = S[component[c] * n + i];
+            for (size_t j = 0; j < at.size; ++j)
+                sum += at.D[place(at.size, component[c], j) * n + i] * at.rate[j * n + i];
+            value[c * n + i] = at.S[component[c] * n + i];
             slope[c * n + i] = sum;
         }
     }
-    sn_free(E);
+    sn_free(at.E);
     return SN_OK;
 }
 
-// nominal stresses at the recorded times: T_12 (n), or T_1 then T_2 (2 x n)
-static sn_status stress_at_level(const void *context, int level, double *stress) {
-    const plane *p = context;
+// nominal stresses of a compressible block at the recorded times: T_1 then T_2 (2 x n)
+static sn_status block_at_level(const plane *p, int level, double *stress) {
     const sn_path *path = p->path;
-    sn_channels of = {p->shear ? 2 : 3, p, fill};
+    sn_faces faces = {.held = {true, true, false}, .at = {1.0, 1.0, 0.0}};
+    for (int i = 0; i < 2; ++i) faces.per[i] = p->target[i] - 1.0;
+    sn_block_row *row = sn_alloc((size_t)path->count, sizeof *row);
+    if (!row) return SN_E_MEMORY;
+    sn_status status = sn_path_block(path, p->tissue, &faces, p->e, level, row);
+    for (int r = 0; status == SN_OK && r < path->records; ++r)
+        for (int i = 0; i < 2; ++i) stress[i * path->records + r] = row[path->record[r]].stress[i];
+    sn_free(row);
+    return status;
+}
+
+// the same where the elastic stresses are known functions of u; T_12 (n) in shear
+static sn_status known_at_level(const plane *p, int level, double *stress) {
+    const sn_path *path = p->path;
+    sn_channels of = {channels_of(p), p, fill};
     double *out = sn_alloc((size_t)(path->count * of.count), sizeof *out);
     if (!out) return SN_E_MEMORY;
     sn_status status = sn_path_hereditary(path, &of, p->e, level, out);
     for (int r = 0; status == SN_OK && r < path->records; ++r) {
-        double u = path->stretch[path->record[r]], l[3], second = 0.0;
+        double u = path->stretch[path->record[r]], l[3];
         const double *H = out + path->record[r] * of.count;
         if (p->shear) {
             stress[r] = H[0] + p->target[0] * u * H[1];
-        } else {
-            stretches_at(p, u, l);
-            stress[r] = l[0] * H[0] - l[2] * l[2] * H[2] / l[0];
-            second = stress[path->records + r] = l[1] * H[1] - l[2] * l[2] * H[2] / l[1];
+            continue;
         }
-        if (!isfinite(stress[r]) || !isfinite(second))
-            status = sn_fail(SN_E_RANGE, "law %s overflows %g s into the test: check the constants",
-                             p->tissue->law->name, path->time[path->record[r]]);
+        stretches_at(p, u, l);
+        double pressure = of.count == 3 ? l[2] * l[2] * H[2] : 0.0;
+        for (int i = 0; i < 2; ++i) stress[i * path->records + r] = l[i] * H[i] - pressure / l[i];
     }
     sn_free(out);
     return status;
+}
+
+static sn_status stress_at_level(const void *context, int level, double *stress) {
+    const plane *p = context;
+    const sn_path *path = p->path;
+    SN_TRY(p->block ? block_at_level(p, level, stress) : known_at_level(p, level, stress));
+    for (int i = 0; i < path->records * (p->shear ? 1 : 2); ++i)
+        if (!isfinite(stress[i]))
+            return sn_fail(SN_E_RANGE, "law %s overflows %g s into the test: check the constants",
+                           p->tissue->law->name, path->time[path->record[i % path->records]]);
+    return SN_OK;
 }
 
 static sn_status check(const sn_tissue *tissue, const sn_protocol *p) {
@@ -119,14 +171,14 @@ static sn_status check(const sn_tissue *tissue, const sn_protocol *p) {
         p->kind == SN_PROTOCOL_SHEAR ? p->shear != 0.0 : p->stretch_1 != 1.0 || p->stretch_2 != 1.0;
     if (!moves)
         return sn_fail(SN_E_RANGE, "protocol %s: nothing would move: give another target", name);
-    sn_moduli moduli = {0.0, 0.0, 0.0};
-    if (tissue->law->kind == SN_LAW_SOLID)
-        tissue->law->moduli(tissue->value, tissue->terms, &moduli);
-    if (isinf(moduli.bulk)) return SN_OK;
-    return sn_fail(SN_E_UNSUPPORTED,
-                   "law %s: a %s test needs an incompressible solid, such as neo-hookean with "
-                   "bulk_modulus: incompressible",
-                   tissue->law->name, name);
+    if (tissue->law->kind == SN_LAW_UNIAXIAL)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "law %s is uniaxial: a %s test needs a solid law, such as neo-hookean, or a "
+                       "membrane law, such as fung-planar",
+                       tissue->law->name, name);
+    if (p->kind == SN_PROTOCOL_BIAXIAL && tissue->law->kind == SN_LAW_SOLID)
+        return sn_pull_straight(tissue);
+    return SN_OK;
 }
 
 static sn_status fill_record(const plane *p, int n, const double *time, const double *stress,
@@ -153,6 +205,10 @@ sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *protocol, sn
     plane p = {.tissue = tissue, .shear = protocol->kind == SN_PROTOCOL_SHEAR, .e = &e};
     p.target[0] = p.shear ? protocol->shear : protocol->stretch_1;
     p.target[1] = p.shear ? 1.0 : protocol->stretch_2;
+    sn_moduli moduli;
+    tissue->law->moduli(tissue->value, tissue->terms, &moduli);
+    p.block = !p.shear && tissue->law->kind == SN_LAW_SOLID && !isinf(moduli.bulk);
+    double base = !p.block ? 0.0 : e.viscous > 0.0 ? 2.0 : 4.0;
     const double knots[] = {0.0, protocol->ramp}, drive[] = {0.0, 1.0};
     int n = protocol->points;
     double change;
@@ -165,7 +221,7 @@ sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *protocol, sn
     SN_TRY_GOTO(status, sn_history_create(1, 2, knots, drive, &motion));
     SN_TRY_GOTO(status, sn_path_lay(motion, 0.0, n, time, &path));
     p.path = path;
-    SN_TRY_GOTO(status, sn_refine(stress_at_level, &p, p.shear ? n : 2 * n, 0.0, tolerance, stress,
+    SN_TRY_GOTO(status, sn_refine(stress_at_level, &p, p.shear ? n : 2 * n, base, tolerance, stress,
                                   &change));
     if (change > tolerance)
         SN_TRY_GOTO(status,

@@ -1,22 +1,30 @@
 // Motions of the uniaxial testing machine, and the dispatch of all tests.
 // SPDX-License-Identifier: Apache-2.0
 #include <math.h>
+#include <stdio.h>
 
 #include "lab/protocol/protocol.h"
 
 enum { SINE_LINES = 100 };
 static const double pi = 3.14159265358979323846;
 
+// where the legs of a motion start
+static double start_of(const sn_protocol *p) {
+    return p->kind == SN_PROTOCOL_CYCLIC ? p->lower : 1.0;
+}
+
 // checks a motion to a stretch and gives its ramp time
 static sn_status ramp_of(const sn_protocol *p, double *ramp) {
     const char *name = sn_protocol_name(p->kind);
     SN_TRY(sn_protocol_check(p));
-    if (p->stretch == 1.0)
+    double start = start_of(p);
+    if (p->stretch == start)
         return sn_fail(SN_E_RANGE,
-                       "protocol %s: stretch is 1, nothing would move: give another target", name);
+                       "protocol %s: stretch is %g, nothing would move: give another target", name,
+                       start);
     if (p->ramp == 0.0 && p->rate == 0.0)
         return sn_fail(SN_E_RANGE, "protocol %s: ramp and rate are both 0: give one of them", name);
-    *ramp = p->ramp > 0.0 ? p->ramp : fabs(p->stretch - 1.0) / p->rate;
+    *ramp = p->ramp > 0.0 ? p->ramp : fabs(p->stretch - start) / p->rate;
     if (!isfinite(*ramp) || !(*ramp > 0.0))
         return sn_fail(SN_E_RANGE,
                        "protocol %s: rate %g 1/s to stretch %g takes no usable time: give ramp",
@@ -24,7 +32,7 @@ static sn_status ramp_of(const sn_protocol *p, double *ramp) {
     return SN_OK;
 }
 
-// way from 1 to the target at the knot k of `lines` knots a leg
+// way from the start to the target at the knot k of `lines` knots a leg
 static double way(int k, int lines) {
     int at = k % (2 * lines);
     if (at > lines) at = 2 * lines - at;
@@ -33,36 +41,55 @@ static double way(int k, int lines) {
     return half * half; // (1 - cos)/2
 }
 
-// knots of waves or a ramp: legs of one ramp time between 1 and the target, then a hold
-static sn_status legs_history(const sn_protocol *p, int legs, double ramp, double hold,
-                              sn_history **stretch) {
-    int lines = p->wave == SN_WAVE_SINE ? SINE_LINES : 1, moving = legs * lines;
-    int count = moving + 1 + (hold > 0.0);
-    double *knots = sn_alloc(2 * (size_t)count, sizeof *knots);
+// a motion in legs of one ramp time between the start and the target, then a hold
+typedef struct legs {
+    int before, recorded; // of preconditioning, of the record
+    double approach;      // seconds from stretch 1 to the start of the first leg
+    double ramp, hold;
+} legs;
+
+static legs legs_of(const sn_protocol *p, double ramp) {
+    bool cyclic = p->kind == SN_PROTOCOL_CYCLIC;
+    double start = start_of(p);
+    return (legs){.before = cyclic ? 2 * p->precondition : 0,
+                  .recorded = cyclic ? 2 * p->cycles : 1,
+                  .approach = ramp * fabs(start - 1.0) / fabs(p->stretch - start),
+                  .ramp = ramp,
+                  .hold = p->kind == SN_PROTOCOL_RELAXATION ? p->hold : 0.0};
+}
+
+static sn_status legs_history(const sn_protocol *p, const legs *l, sn_history **stretch) {
+    int lines = p->wave == SN_WAVE_SINE ? SINE_LINES : 1;
+    int moving = (l->before + l->recorded) * lines, first = l->approach > 0.0;
+    int count = first + moving + 1 + (l->hold > 0.0);
+    double start = start_of(p);
+    double *knots = sn_alloc(2 * (size_t)count, sizeof *knots), *value = knots + count;
     if (!knots) return SN_E_MEMORY;
+    value[0] = 1.0; // the first leg overwrites it where it starts at once
     for (int k = 0; k <= moving; ++k) {
         double w = way(k, lines);
-        knots[k] = ramp * k / lines;
-        knots[count + k] = w == 1.0 ? p->stretch : 1.0 + w * (p->stretch - 1.0);
+        knots[first + k] = l->approach + l->ramp * (k / lines + (double)(k % lines) / lines);
+        value[first + k] = w == 1.0 ? p->stretch : start + w * (p->stretch - start);
     }
-    if (hold > 0.0) {
-        knots[moving + 1] = ramp * legs + hold;
-        knots[count + moving + 1] = knots[count + moving];
+    if (l->hold > 0.0) {
+        knots[count - 1] = knots[count - 2] + l->hold;
+        value[count - 1] = value[count - 2];
     }
-    sn_status status = sn_history_create(1, count, knots, knots + count, stretch);
+    sn_status status = sn_history_create(1, count, knots, value, stretch);
     sn_free(knots);
     return status;
 }
 
-// rows spread over the legs, every corner a row
-static void legs_times(int points, int legs, double ramp, double *time) {
-    time[0] = 0.0;
-    for (int leg = 0; leg < legs; ++leg) {
-        int first = (int)((long long)(points - 1) * leg / legs);
-        int last = (int)((long long)(points - 1) * (leg + 1) / legs);
-        for (int i = first + 1; i <= last; ++i)
-            time[i] =
-                i == last ? ramp * (leg + 1) : ramp * (leg + (double)(i - first) / (last - first));
+// rows spread over the recorded legs, every corner a row
+static void legs_times(int points, const legs *l, double *time) {
+    time[0] = l->approach + l->ramp * l->before;
+    for (int leg = 0; leg < l->recorded; ++leg) {
+        int first = (int)((long long)(points - 1) * leg / l->recorded);
+        int last = (int)((long long)(points - 1) * (leg + 1) / l->recorded);
+        for (int i = first + 1; i <= last; ++i) {
+            double part = i == last ? 1.0 : (double)(i - first) / (last - first);
+            time[i] = l->approach + l->ramp * (l->before + leg + part);
+        }
     }
 }
 
@@ -82,26 +109,33 @@ sn_status sn_protocol_history(const sn_protocol *protocol, sn_history **stretch,
     *time = NULL;
     double ramp = (double)NAN;
     SN_TRY(ramp_of(protocol, &ramp));
-    bool held = protocol->kind == SN_PROTOCOL_RELAXATION;
-    int legs = protocol->kind == SN_PROTOCOL_CYCLIC ? 2 * protocol->cycles : 1;
-    if (protocol->points <= 2 * legs)
+    legs l = legs_of(protocol, ramp);
+    if (protocol->points <= 2 * l.recorded)
         return sn_fail(SN_E_RANGE,
                        "protocol %s: %d points for %d straight lines of the motion: expected at "
                        "least %d",
-                       sn_protocol_name(protocol->kind), protocol->points, legs, 2 * legs + 1);
+                       sn_protocol_name(protocol->kind), protocol->points, l.recorded,
+                       2 * l.recorded + 1);
     double *t = sn_alloc((size_t)protocol->points, sizeof *t);
     if (!t) return SN_E_MEMORY;
-    sn_status status = legs_history(protocol, legs, ramp, held ? protocol->hold : 0.0, stretch);
+    sn_status status = legs_history(protocol, &l, stretch);
     if (status != SN_OK) {
         sn_free(t);
         return status;
     }
-    if (held)
+    if (l.hold > 0.0)
         sn_protocol_hold_times(protocol->points, ramp, protocol->hold, t);
     else
-        legs_times(protocol->points, legs, ramp, t);
+        legs_times(protocol->points, &l, t);
     *time = t;
     return SN_OK;
+}
+
+// the cycle that a recorded time of a cyclic test is in; its end belongs to it
+static double cycle_at(const sn_protocol *protocol, const double *time, double t) {
+    double length = (time[protocol->points - 1] - time[0]) / protocol->cycles;
+    double done = (t - time[0]) / length;
+    return protocol->precondition + fmax(1.0, ceil(done * (1.0 - 1e-12)));
 }
 
 // fills an empty record from the times and stresses of a run
@@ -112,13 +146,15 @@ static sn_status fill_record(const sn_protocol *protocol, const sn_history *stre
     SN_TRY(sn_record_add_series(record, "stretch", "1"));
     SN_TRY(sn_record_add_series(record, "stress", "Pa"));
     if (cyclic) SN_TRY(sn_record_add_series(record, "cycle", "1"));
+    if (cyclic && protocol->precondition > 0) {
+        char text[SN_NAME_MAX];
+        snprintf(text, sizeof text, "%d cycles before the first row", protocol->precondition);
+        SN_TRY(sn_record_add_note(record, "preconditioning", text, (double)NAN));
+    }
     for (int i = 0; i < protocol->points; ++i) {
         double at = 1.0;
         sn_history_at(stretch, time[i], &at);
-        // the end of a cycle belongs to it
-        double cycles = time[i] / stretch->time[stretch->count - 1] * protocol->cycles;
-        double cycle = fmax(1.0, ceil(cycles * (1.0 - 1e-12)));
-        double values[4] = {time[i], at, stress[i], cycle};
+        double values[4] = {time[i], at, stress[i], cyclic ? cycle_at(protocol, time, time[i]) : 0};
         SN_TRY(sn_record_append(record, values));
     }
     return SN_OK;

@@ -12,9 +12,13 @@
 //
 // Moduli. About a stretch L that has been held for ever, dL = a exp(i w t) changes an elastic
 // channel f by f' dL, and its hereditary integral by G*(w) f' dL, G* = G' + i G''. Uniaxial laws
-// have T = H[T], so the moduli are G' T' and G'' T'. Incompressible solids have T = L H[S11] -
-// H[S22]/L^2, whose factors move too, on what has relaxed:
-//     E*(w) = G*(w) (L S11' - S22'/L^2) + G(infinity) (S11 + 2 S22/L^3).
+// have T = H[T], so the moduli are G' T' and G'' T'. A strip of a membrane has T = L H[S11], whose
+// factor moves too, on what has relaxed: E*(w) = G*(w) L S11' + G(infinity) S11. A solid moves its
+// sides as well. With p the pressure, T_i = l_i H[S_ii] - p/l_i, and for small changes d
+//     dT_i = d_i (Goo S_ii + p/l_i^2) + l_i G* sum_j (dS_ii/dl_j) d_j - dp/l_i,
+//     dp = -kappa sum_j d_j/l_j,   kappa = G* K J^2 + Goo K (J - 1) J   (incompressible: infinite),
+// with dT_2 = dT_3 = 0 three equations for the changes of the sides and of the pressure.
+#include <complex.h>
 #include <math.h>
 
 #include "lab/protocol/path.h"
@@ -128,48 +132,130 @@ fail:
 
 //---- dynamic moduli ------------------------------------------------------------------------------
 
-// dT/dstretch about a held stretch: the part that goes with G* and the part on what has relaxed
+// a test about a held stretch
 typedef struct tangent {
-    double moving, held;
+    bool solid;
+    double moving, held; // dT/dstretch that goes with G*, and on what has relaxed; not of a solid
+    double l[3], S[3];   // of a solid: stretches, S_ii,
+    double slope[3][3];  // dS_ii/dl_j,
+    double bulk;
 } tangent;
+
+// stretches of the sides and elastic stresses of a solid that has been held for ever
+static sn_status solid_at(const sn_tissue *tissue, double L, tangent *out) {
+    const double knot = 0.0;
+    sn_exponentials none;
+    sn_memory memory = sn_memory_none();
+    sn_history *held = NULL;
+    sn_path *path = NULL;
+    sn_block_row row;
+    sn_moduli moduli;
+    sn_status status;
+    SN_TRY(sn_memory_expand(&memory, &none));
+    SN_TRY(sn_history_create(1, 1, &knot, &L, &held));
+    SN_TRY_GOTO(status, sn_path_create(held, 1, &knot, &path));
+    // all channels have relaxed by the same factor, so the sides stand where they did at first
+    SN_TRY_GOTO(status, sn_path_block(path, tissue, &sn_faces_pulled, &none, 1, &row));
+    double E[6] = {0}, S[6], D[21];
+    for (int i = 0; i < 3; ++i) {
+        out->l[i] = row.stretch[i];
+        E[i] = 0.5 * (out->l[i] - 1.0) * (out->l[i] + 1.0);
+    }
+    sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, E, NULL, S, D);
+    static const int place[3][3] = {{0, 1, 2}, {1, 6, 7}, {2, 7, 11}}; // upper triangle by rows
+    for (int i = 0; i < 3; ++i) {
+        out->S[i] = S[i];
+        for (int j = 0; j < 3; ++j) out->slope[i][j] = D[place[i][j]] * out->l[j];
+    }
+    tissue->law->moduli(tissue->value, tissue->terms, &moduli);
+    out->bulk = moduli.bulk;
+    out->solid = true;
+fail:
+    sn_path_destroy(path);
+    sn_history_destroy(held);
+    return status;
+}
 
 static sn_status tangent_at(const sn_tissue *tissue, double L, tangent *out) {
     sn_pull pull;
+    *out = (tangent){.solid = false};
     SN_TRY(sn_pull_choose(tissue, &pull));
-    *out = (tangent){0.0, 0.0};
-    if (pull == SN_PULL_LATERAL)
-        return sn_fail(SN_E_UNSUPPORTED,
-                       "law %s: a dynamic test needs a uniaxial law, or an incompressible solid "
-                       "that is alike across the pull (bulk_modulus: incompressible)",
-                       tissue->law->name);
     if (pull == SN_PULL_UNIAXIAL) {
         sn_law_uniaxial(tissue->law, tissue->value, tissue->terms, 1, &L, NULL, NULL, &out->moving);
+    } else if (pull == SN_PULL_STRIP) {
+        double value, slope;
+        SN_TRY(sn_pull_strip(tissue, 1, &L, &value, &slope));
+        out->moving = L * slope;
+        out->held = sn_memory_equilibrium(&tissue->memory) * value;
     } else {
-        double value[2], slope[2];
-        SN_TRY(sn_pull_closed(tissue, 1, &L, value, slope));
-        out->moving = L * slope[0] - slope[1] / (L * L);
-        out->held =
-            sn_memory_equilibrium(&tissue->memory) * (value[0] + 2.0 * value[1] / (L * L * L));
+        SN_TRY(solid_at(tissue, L, out));
     }
-    if (isfinite(out->moving) && isfinite(out->held)) return SN_OK;
+    bool usable = isfinite(out->moving) && isfinite(out->held);
+    for (int i = 0; i < 3; ++i)
+        usable = usable && isfinite(out->S[i]) && isfinite(out->slope[i][i]);
+    if (usable) return SN_OK;
     return sn_fail(SN_E_RANGE, "law %s overflows at stretch %g: check the constants",
                    tissue->law->name, L);
 }
 
+// what memory makes of a part of the stress in a small oscillation
+typedef struct response {
+    double complex moving; // G*(w)
+    double held;           // G(infinity)
+} response;
+
+// dT/dstretch of a solid, its distortional and its volume stress each with a memory of its own
+static double complex solid_modulus(const tangent *t, response distortion, response volume) {
+    const double *l = t->l;
+    double J = l[0] * l[1] * l[2];
+    bool free_volume = !isinf(t->bulk);
+    // incompressible: the relaxed stress of the free third face is the pressure
+    double p = free_volume ? -volume.held * sn_volume_stress(t->bulk, J) * J
+                           : l[2] * l[2] * distortion.held * t->S[2];
+    double complex compliance = 0.0; // 1/kappa
+    if (free_volume) compliance = 1.0 / (volume.moving * t->bulk * J * J - p);
+    // rows: dT_1, dT_2, dT_3 and the volume; columns: d_1, d_2, d_3 and dp
+    double complex A[4][4];
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) A[i][j] = l[i] * distortion.moving * t->slope[i][j];
+        A[i][i] += distortion.held * t->S[i] + p / (l[i] * l[i]);
+        A[i][3] = -1.0 / l[i];
+        A[3][i] = 1.0 / l[i];
+    }
+    A[3][3] = compliance;
+    for (int k = 3; k > 0; --k) { // eliminates dp, d_3, d_2; a pivot of 0 is swapped away
+        int best = k;
+        for (int i = 1; i < k; ++i)
+            if (cabs(A[i][k]) > cabs(A[best][k])) best = i;
+        for (int j = 0; j < 4; ++j) {
+            double complex swap = A[k][j];
+            A[k][j] = A[best][j], A[best][j] = swap;
+        }
+        for (int i = 0; i < k; ++i) {
+            double complex f = A[i][k] / A[k][k];
+            for (int j = 0; j < k; ++j) A[i][j] -= f * A[k][j];
+        }
+    }
+    return A[0][0];
+}
+
 sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
-    tangent slope;
+    tangent t;
     double *frequency;
     SN_TRY(sn_protocol_sweep(p, &frequency));
     sn_status status;
     SN_TRY_GOTO(status, sn_memory_check(&tissue->memory));
-    SN_TRY_GOTO(status, tangent_at(tissue, p->stretch, &slope));
+    SN_TRY_GOTO(status, tangent_at(tissue, p->stretch, &t));
     SN_TRY_GOTO(status, sn_record_add_series(record, "frequency", "Hz"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "storage_modulus", "Pa"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "loss_modulus", "Pa"));
     for (int i = 0; i < p->points; ++i) {
         double storage, loss;
         sn_memory_modulus(&tissue->memory, two_pi * frequency[i], &storage, &loss);
-        double row[] = {frequency[i], storage * slope.moving + slope.held, loss * slope.moving};
+        double complex G = storage + loss * (double complex)I, modulus = G * t.moving + t.held;
+        response g = {G, sn_memory_equilibrium(&tissue->memory)};
+        if (t.solid) modulus = solid_modulus(&t, g, g);
+        double row[] = {frequency[i], creal(modulus), cimag(modulus)};
         SN_TRY_GOTO(status, sn_record_append(record, row));
     }
 fail:

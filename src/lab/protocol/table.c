@@ -18,7 +18,7 @@
     {                                                                                              \
         .name = "ramp", .symbol = "t_r", .unit = "s", .min = 0.0, .max = (double)INFINITY,         \
         .max_open = true, .init = (value), .log_scale = true,                                      \
-        .text = "Time from stretch 1 to the target; 0: follows from the rate."                     \
+        .text = "Time of the way to the target; 0: follows from the rate."                         \
     }
 #define RATE(value)                                                                                \
     {                                                                                              \
@@ -39,17 +39,26 @@
     }
 
 static const sn_param tensile_params[] = {TARGET(1.1), RATE(0.01), RAMP(0.0), POINTS(101.0)};
-static const sn_param cyclic_params[] = {TARGET(1.1),
-                                         RAMP(1.0),
-                                         RATE(0.1),
-                                         {.name = "cycles",
-                                          .symbol = "N",
-                                          .unit = "1",
-                                          .min = 1.0,
-                                          .max = 1e4,
-                                          .init = 3.0,
-                                          .text = "Times from 1 to the target and back."},
-                                         POINTS(301.0)};
+static const sn_param cyclic_params[] = {
+    TARGET(1.1),
+    RAMP(1.0),
+    RATE(0.1),
+    {.name = "cycles",
+     .symbol = "N",
+     .unit = "1",
+     .min = 1.0,
+     .max = 1e4,
+     .init = 3.0,
+     .text = "Recorded times to the target and back."},
+    STRETCH("lower", "lambda_0", 1.0, "Stretch where a cycle starts and ends."),
+    {.name = "precondition",
+     .symbol = "N_0",
+     .unit = "1",
+     .min = 0.0,
+     .max = 1e4,
+     .init = 0.0,
+     .text = "Cycles before those that are recorded."},
+    POINTS(301.0)};
 static const sn_param relaxation_params[] = {
     TARGET(1.1), RAMP(0.1), RATE(1.0),
     POSITIVE("hold", "t_h", "s", 100.0, "Time at the target stretch after the ramp."),
@@ -136,6 +145,8 @@ static const field fields[] = {{"stretch", offsetof(sn_protocol, stretch), false
                                {"shear", offsetof(sn_protocol, shear), false},
                                {"from", offsetof(sn_protocol, from), false},
                                {"to", offsetof(sn_protocol, to), false},
+                               {"lower", offsetof(sn_protocol, lower), false},
+                               {"precondition", offsetof(sn_protocol, precondition), true},
                                {"cycles", offsetof(sn_protocol, cycles), true},
                                {"points", offsetof(sn_protocol, points), true}};
 
@@ -143,12 +154,6 @@ static const field *field_of(const char *name) {
     const field *f = fields;
     while (strcmp(f->name, name) != 0) ++f; // every parameter of the tables has one
     return f;
-}
-
-static double get(const sn_protocol *p, const char *name) {
-    const field *f = field_of(name);
-    const char *place = (const char *)p + f->offset;
-    return f->whole ? (double)*(const int *)place : *(const double *)place;
 }
 
 static void put(sn_protocol *p, const char *name, double value) {
@@ -204,6 +209,15 @@ sn_protocol sn_protocol_default(sn_protocol_kind kind) {
     return p;
 }
 
+double sn_protocol_get(const sn_protocol *protocol, const char *name) {
+    SN_ASSERT(protocol && name);
+    const row *r = &rows[protocol->kind];
+    if (sn_param_find(r->params, r->count, name) < 0) return (double)NAN;
+    const field *f = field_of(name);
+    const char *place = (const char *)protocol + f->offset;
+    return f->whole ? (double)*(const int *)place : *(const double *)place;
+}
+
 sn_status sn_protocol_set(sn_protocol *protocol, const char *name, double value) {
     SN_ASSERT(protocol && name);
     const row *r = &rows[protocol->kind];
@@ -223,7 +237,7 @@ sn_status sn_protocol_check(const sn_protocol *protocol) {
     const row *r = &rows[protocol->kind];
     double value[SN_PROTOCOL_PARAMS_MAX];
     SN_ASSERT(r->count <= SN_PROTOCOL_PARAMS_MAX);
-    for (int k = 0; k < r->count; ++k) value[k] = get(protocol, r->params[k].name);
+    for (int k = 0; k < r->count; ++k) value[k] = sn_protocol_get(protocol, r->params[k].name);
     char owner[SN_NAME_MAX];
     snprintf(owner, sizeof owner, "protocol %s", r->name);
     if (protocol->wave != SN_WAVE_TRIANGLE && protocol->kind != SN_PROTOCOL_CYCLIC)
