@@ -39,4 +39,9 @@ for isa in scalar sse2 avx2 avx512; do
     cmp -s $out/scalar/history.csv $out/$isa/history.csv || differing=$((differing + 1))
 done
 line "instruction sets whose history differs from scalar's in any bit" $differing 0
+
+# 95 % intervals of fits of random tissues hold the truth as often as they say
+cmake --preset check >/dev/null
+cmake --build --preset check --target verification_coverage >/dev/null
+build/check/tests/verification_coverage 200 2 || bad=1
 exit $bad

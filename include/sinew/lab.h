@@ -189,6 +189,14 @@ SN_API sn_status sn_reduce_creep(const sn_curve *curve, sn_creep_result *out);
 #define SN_FIT_PARAMS_MAX 32
 #define SN_FIT_CURVES_MAX 32
 
+/// What the squares of a curve are multiplied by, besides sn_fit_def.weight.
+typedef enum sn_fit_weighting {
+    SN_FIT_PLAIN, ///< 1: the noise is the same, in Pa, on all curves
+    SN_FIT_PEAK,  ///< (largest peak of all / the curve's)^2: the noise is a part of each peak
+    SN_FIT_NOISE  ///< 1 / the variance of the curve's residuals, found with the constants
+} sn_fit_weighting;
+#define SN_FIT_BOOTSTRAP_MIN 40 ///< least refits that a 2.5 % quantile asks for
+
 /// What to fit. Fill from sn_fit_def_default().
 typedef struct sn_fit_def {
     int curve_count;
@@ -200,6 +208,9 @@ typedef struct sn_fit_def {
     int law_terms;               ///< terms of an elastic law with lists (ogden)
     int starts;                  ///< local searches from the best of the global stage
     unsigned seed;
+    sn_fit_weighting weighting;
+    double from, to; ///< rows outside move the model, but are not fitted; s as recorded
+    int bootstrap;   ///< refits for ci95_bootstrap, 0: none, else SN_FIT_BOOTSTRAP_MIN or more
     int fixed_count; ///< parameters held at a value
     const char *fixed_name[SN_FIT_PARAMS_MAX];
     double fixed_value[SN_FIT_PARAMS_MAX];
@@ -218,7 +229,8 @@ typedef struct sn_fit_param {
     /// profile where it is wide (the error is then the interval over 2 t); an end that meets the
     /// bounds of the search is open there.
     double ci95[2];
-    bool profiled; ///< ci95 is from the profile
+    bool profiled;            ///< ci95 is from the profile
+    double ci95_bootstrap[2]; ///< percentiles of the refits; NAN without them
     bool fixed, at_bound;
     bool identifiable;
     char reason[SN_TEXT_MAX]; ///< why not
@@ -230,8 +242,18 @@ typedef struct sn_fit_curve {
     double rmse;       ///< Pa
     double peak;       ///< largest |measured stress|, Pa
     double r_squared;
-    int worst; ///< row of the largest residual
+    int worst;            ///< row of the largest residual
+    int first, used;      ///< rows of the window, which all of the above but `predicted` speak of
+    double weight;        ///< factor of its squares
+    double durbin_watson; ///< of its residuals in the order of the rows: 2 where they are white
 } sn_fit_curve;
+
+/// What became of the refits of a bootstrap.
+typedef struct sn_fit_bootstrap {
+    int asked, done;          ///< done: those that converged, on which the intervals stand
+    int block;                ///< longest block of rows that share a sign
+    char reason[SN_TEXT_MAX]; ///< why some are left out, or why there are no intervals
+} sn_fit_bootstrap;
 
 /// A fit: all stresses are residuals in Pa, R2 = 1 - SSE/SST over all points of all curves.
 typedef struct sn_fit_result {
@@ -241,13 +263,17 @@ typedef struct sn_fit_result {
     double correlation[SN_FIT_PARAMS_MAX * SN_FIT_PARAMS_MAX]; ///< (param_count x param_count)
     double condition;          ///< condition number of J^T J with its columns scaled to 1
     char weakest[SN_TEXT_MAX]; ///< the combination of constants that the data know least
-    bool identifiable;         ///< every constant is
+    /// What the data do know of two or more constants that they do not tell apart: a product of
+    /// powers with its error. Empty where there are no such constants.
+    char determined[SN_TEXT_MAX];
+    bool identifiable; ///< every constant is
     bool converged;
     char reason[SN_TEXT_MAX]; ///< of the end of the search
     int points;
     double r_squared, rmse, nrmse, aicc; ///< nrmse: rmse over the largest measured stress
     int curve_count;
     sn_fit_curve curve[SN_FIT_CURVES_MAX];
+    sn_fit_bootstrap bootstrap;
     int evaluations;
 } sn_fit_result;
 
@@ -255,8 +281,31 @@ typedef struct sn_fit_result {
 /// modulus is no parameter of a uniaxial fit: it is infinite unless fixed. Same input, same bits.
 /// @return SN_OK, SN_E_DATA (no time, fewer points than parameters, constant stretch),
 /// SN_E_UNSUPPORTED (a law and a test that do not go together), SN_E_NAME (fixed name), SN_E_RANGE
-/// (fixed value), SN_E_DEFINITION (no curve, no law, too many parameters), SN_E_MEMORY.
+/// (fixed value, weight, number of refits), SN_E_DEFINITION (no curve, no law, too many
+/// parameters), SN_E_MEMORY.
 SN_API sn_status sn_fit(const sn_fit_def *def, sn_fit_result *result);
+
+/// One number of terms that was tried.
+typedef struct sn_fit_trial {
+    int terms, constants; ///< constants: that were searched
+    bool converged;
+    double r_squared, rmse, aicc;
+} sn_fit_trial;
+#define SN_FIT_TRIALS_MAX 12
+
+/// The choice of a number of terms.
+typedef struct sn_fit_choice {
+    int count;
+    sn_fit_trial trial[SN_FIT_TRIALS_MAX];
+    int best, second;         ///< of `trial`; second -1 where there is one only
+    char reason[SN_TEXT_MAX]; ///< what was chosen, over what, and why the trials ended
+} sn_fit_choice;
+/// Fits with 1, 2, … `most` terms of the memory (`in_law` false) or of the law and takes the number
+/// with the least AICc. The number in `def` is not used. The trials end early where the rows are
+/// too few for more constants.
+/// @return as sn_fit(); SN_E_UNSUPPORTED where neither has terms, SN_E_RANGE (most).
+SN_API sn_status sn_fit_choose_terms(const sn_fit_def *def, bool in_law, int most,
+                                     sn_fit_choice *choice, sn_fit_result *result);
 SN_API void sn_fit_release(sn_fit_result *result);
 /// Stress that a tissue predicts for the recorded history of a curve.
 SN_API sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve,

@@ -24,6 +24,7 @@ static sn_status read_data(const cli_arguments *arguments, fit_data *data) {
         data->curve[k] = (sn_curve){0};
         sn_status status = sn_curve_from_record(record, &data->curve[k]);
         data->count = k + 1;
+        data->weight[k] = 1;
         if (status == SN_OK && !data->curve[k].time)
             status =
                 sn_fail(SN_E_DATA, "%s: no time column: a fit follows the recorded history", path);
@@ -63,16 +64,78 @@ static sn_status read_fixed(const cli_list *list, sn_fit_def *def, char names[][
     return SN_OK;
 }
 
+// "FILE=W" for a curve given by its path or its name
+static sn_status read_weights(const cli_list *list, fit_data *data) {
+    for (int k = 0; k < list->count; k++) {
+        const char *equals = strrchr(list->item[k], '=');
+        if (!equals || equals == list->item[k])
+            return sn_fail(SN_E_SYNTAX, "--weight: found \"%s\", expected FILE=W, e.g. fast.csv=2",
+                           list->item[k]);
+        size_t length = (size_t)(equals - list->item[k]);
+        int found = -1;
+        for (int c = 0; c < data->count; c++) {
+            const char *names[] = {data->path[c], cli_basename(data->path[c])};
+            for (int n = 0; n < 2; n++)
+                if (strlen(names[n]) == length && strncmp(names[n], list->item[k], length) == 0)
+                    found = c;
+        }
+        if (found < 0)
+            return sn_fail(SN_E_NAME,
+                           "--weight %s: no curve of that name is given, the first is %s",
+                           list->item[k], data->path[0]);
+        sn_status status = sn_quantity_parse(equals + 1, "1", &data->weight[found]);
+        if (status != SN_OK) return sn_fail_within(status, "--weight %s", list->item[k]);
+        if (!(data->weight[found] > 0))
+            return sn_fail(SN_E_RANGE, "--weight %s: expected a number above 0", list->item[k]);
+    }
+    return SN_OK;
+}
+
+static sn_status read_weighting(const char *text, sn_fit_def *def) {
+    static const char *const names[] = {"plain", "peak", "noise"};
+    for (int k = 0; k < 3; k++)
+        if (strcmp(text, names[k]) == 0) {
+            def->weighting = (sn_fit_weighting)k;
+            return SN_OK;
+        }
+    return sn_fail(SN_E_NAME, "--weights: found \"%s\", expected plain, peak or noise", text);
+}
+
+// A number of terms, "auto" or "auto:N". *most: how many to try, 0 where the number is given.
+static sn_status read_terms(const char *option, const char *text, int usual, int *terms,
+                            int *most) {
+    bool automatic = strncmp(text, "auto", 4) == 0;
+    const char *digits = automatic ? text + 4 : text;
+    *most = 0;
+    if (automatic) *most = usual;
+    if (automatic && *digits == 0) return SN_OK;
+    if (automatic && *digits++ != ':') digits = "";
+    char *end;
+    long value = strtol(digits, &end, 10);
+    if (end == digits || *end || value < 1 || value > SN_TERMS_MAX)
+        return sn_fail(SN_E_SYNTAX,
+                       "--%s: found \"%s\", expected a whole number of at least 1, auto or auto:N",
+                       option, text);
+    *(automatic ? most : terms) = (int)value;
+    return SN_OK;
+}
+
 //---- held-out predictions ------------------------------------------------------------------------
 
 // fits all curves but one and predicts that one
 static sn_status hold_out(const sn_fit_def *def, const fit_data *data, int left_out,
                           held_out *result) {
     sn_curve others[SN_FIT_CURVES_MAX];
+    double weight[SN_FIT_CURVES_MAX];
     int count = 0;
-    for (int k = 0; k < data->count; k++)
-        if (k != left_out) others[count++] = data->curve[k];
+    for (int k = 0; k < data->count; k++) {
+        if (k == left_out) continue;
+        weight[count] = data->weight[k];
+        others[count++] = data->curve[k];
+    }
     sn_fit_def rest = *def;
+    rest.bootstrap = 0;
+    rest.weight = weight;
     rest.curve = others;
     rest.curve_count = count;
     sn_fit_result *fit = sn_alloc(1, sizeof *fit);
@@ -139,12 +202,34 @@ static sn_status write_results(const char *folder, const fit_outcome *o, const j
 }
 
 typedef struct fit_request {
-    const char *elastic, *memory, *folder, *name;
-    int terms;
+    const char *elastic, *memory, *folder, *name, *terms, *law_terms, *weights;
+    int bootstrap, seed;
     bool hold_out;
-    double density, bulk_ratio;
-    cli_list fixed;
+    double density, bulk_ratio, from, to;
+    cli_list fixed, weight;
 } fit_request;
+
+static sn_status set_request(const fit_request *request, sn_fit_def *def, fit_outcome *o,
+                             int most[2]) {
+    SN_TRY(read_terms("terms", request->terms, 6, &def->terms, &most[0]));
+    SN_TRY(read_terms("law-terms", request->law_terms, 3, &def->law_terms, &most[1]));
+    if (most[0] && most[1])
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "fit: --terms auto and --law-terms auto together: give one "
+                       "of the two numbers");
+    SN_TRY(read_weighting(request->weights, def));
+    if (!(request->from < request->to))
+        return sn_fail(SN_E_RANGE, "fit: --from %g s is not before --to %g s", request->from,
+                       request->to);
+    def->from = request->from;
+    def->to = request->to;
+    def->bootstrap = request->bootstrap;
+    def->seed = (unsigned)request->seed;
+    def->weight = o->data->weight;
+    o->weights = request->weights;
+    o->seed = request->seed;
+    return SN_OK;
+}
 
 static sn_status fit_all(const fit_request *request, const cli_arguments *arguments,
                          fit_outcome *o) {
@@ -158,15 +243,23 @@ static sn_status fit_all(const fit_request *request, const cli_arguments *argume
         if (!def.memory) return sn_fail_within(SN_E_NAME, "--memory");
     }
     SN_TRY(read_fixed(&request->fixed, &def, names));
+    int most[2];
+    SN_TRY(set_request(request, &def, o, most));
     SN_TRY(read_data(arguments, o->data));
-    def.terms = request->terms;
+    SN_TRY(read_weights(&request->weight, o->data));
     def.curve = o->data->curve;
     def.curve_count = o->data->count;
     def.progress = cli_progress_show;
     def.progress_context = &progress;
-    sn_status status = sn_fit(&def, o->fit);
+    o->chose = most[0] || most[1];
+    o->chose_law = most[1];
+    sn_status status =
+        o->chose ? sn_fit_choose_terms(&def, o->chose_law, most[o->chose_law], &o->choice, o->fit)
+                 : sn_fit(&def, o->fit);
     if (status != SN_OK) return status;
     o->fitted = true;
+    if (o->chose)
+        *(o->chose_law ? &def.law_terms : &def.terms) = o->choice.trial[o->choice.best].terms;
     if (request->hold_out) SN_TRY(hold_out_each(&def, o->data, o->held_out));
     cli_progress_end(&progress);
     return complete_tissue(o, request->name, request->density);
@@ -190,15 +283,56 @@ static int work(const fit_request *request, const cli_arguments *arguments, fit_
     return o->fit->converged ? CLI_DONE : CLI_FAILED;
 }
 
+static int run_request(const fit_request *request, const cli_arguments *arguments) {
+    fit_outcome *outcome = sn_alloc(1, sizeof *outcome);
+    if (!outcome) return cli_fail(SN_E_MEMORY);
+    outcome->bulk_ratio = request->bulk_ratio;
+    outcome->has_held_out = request->hold_out;
+    outcome->data = sn_alloc(1, sizeof *outcome->data);
+    outcome->fit = sn_alloc(1, sizeof *outcome->fit);
+    outcome->held_out = sn_alloc(SN_FIT_CURVES_MAX, sizeof *outcome->held_out);
+    int code = outcome->data && outcome->fit && outcome->held_out
+                   ? work(request, arguments, outcome)
+                   : cli_fail(SN_E_MEMORY);
+    if (outcome->fitted) sn_fit_release(outcome->fit);
+    if (outcome->data) release_data(outcome->data);
+    for (int k = 0; outcome->held_out && k < SN_FIT_CURVES_MAX; k++)
+        sn_free(outcome->held_out[k].prediction.predicted);
+    sn_free(outcome->held_out);
+    sn_free(outcome->fit);
+    sn_free(outcome->data);
+    sn_free(outcome);
+    return code;
+}
+
 static int run(const cli_command *command, int argc, char **argv) {
-    fit_request request = {.terms = 3, .density = NAN, .bulk_ratio = 0};
+    fit_request request = {.terms = "3",
+                           .law_terms = "1",
+                           .weights = "plain",
+                           .seed = 1,
+                           .density = NAN,
+                           .from = -INFINITY,
+                           .to = INFINITY};
     const cli_option options[] = {
         {"elastic", CLI_TEXT, "LAW", NULL, &request.elastic, "exponential, linear, demiray, …"},
         {"memory", CLI_TEXT, "LAW", NULL, &request.memory,
          "fung-spectrum, prony, kelvin, maxwell, voigt, none"},
-        {"terms", CLI_INTEGER, "N", NULL, &request.terms, "exponentials of --memory prony"},
+        {"terms", CLI_TEXT, "N|auto[:N]", NULL, &request.terms,
+         "exponentials of --memory prony; auto: 1 to 6 (or N), by AICc"},
+        {"law-terms", CLI_TEXT, "N|auto[:N]", NULL, &request.law_terms,
+         "terms of --elastic ogden; auto: 1 to 3 (or N), by AICc"},
         {"fix", CLI_LIST, "NAME=VALUE", NULL, &request.fixed,
          "holds a constant, e.g. tau1=\"1 ms\"; may be repeated"},
+        {"from", CLI_QUANTITY, "TIME", "s", &request.from,
+         "earlier rows move the model but are not fitted"},
+        {"to", CLI_QUANTITY, "TIME", "s", &request.to, "later rows are not fitted"},
+        {"weights", CLI_TEXT, "NAME", NULL, &request.weights,
+         "of the curves: plain (1), peak (1/peak squared), noise (1/variance)"},
+        {"weight", CLI_LIST, "FILE=W", NULL, &request.weight,
+         "multiplies one curve's squares; may be repeated"},
+        {"bootstrap", CLI_INTEGER, "N", NULL, &request.bootstrap,
+         "95 % intervals from N refits as well (at least 40; 1000 is usual)"},
+        {"seed", CLI_INTEGER, "N", NULL, &request.seed, "of the search and the bootstrap"},
         {"hold-out", CLI_FLAG, NULL, NULL, &request.hold_out,
          "also predicts every curve from a fit of the others"},
         {"name", CLI_TEXT, "TEXT", NULL, &request.name, "name of the tissue"},
@@ -210,28 +344,15 @@ static int run(const cli_command *command, int argc, char **argv) {
          "writes tissue.yaml, fit.json and report.html there"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 9, &arguments);
+    int code = cli_parse(command, argc, argv, options, (int)(sizeof options / sizeof *options),
+                         &arguments);
     if (code >= 0) return code;
     if (arguments.count < 1) return cli_refuse("fit: no curve given; see sinew fit --help");
     if (arguments.count > SN_FIT_CURVES_MAX)
         return cli_refuse("fit: %d curves given, at most %d", arguments.count, SN_FIT_CURVES_MAX);
     if (!request.elastic)
         return cli_refuse("fit: --elastic is missing, e.g. --elastic exponential");
-    fit_outcome outcome = {.bulk_ratio = request.bulk_ratio};
-    outcome.data = sn_alloc(1, sizeof *outcome.data);
-    outcome.fit = sn_alloc(1, sizeof *outcome.fit);
-    outcome.held_out = sn_alloc(SN_FIT_CURVES_MAX, sizeof *outcome.held_out);
-    outcome.has_held_out = request.hold_out;
-    code = outcome.data && outcome.fit && outcome.held_out ? work(&request, &arguments, &outcome)
-                                                           : cli_fail(SN_E_MEMORY);
-    if (outcome.fitted) sn_fit_release(outcome.fit);
-    if (outcome.data) release_data(outcome.data);
-    for (int k = 0; outcome.held_out && k < SN_FIT_CURVES_MAX; k++)
-        sn_free(outcome.held_out[k].prediction.predicted);
-    sn_free(outcome.held_out);
-    sn_free(outcome.fit);
-    sn_free(outcome.data);
-    return code;
+    return run_request(&request, &arguments);
 }
 
 const cli_command cli_fit = {

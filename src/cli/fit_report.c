@@ -43,6 +43,7 @@ static json_t *parameters_json(const sn_fit_result *f) {
         cli_put_text(row, "unit", p->unit);
         cli_put_number(row, "standard_error", p->standard_error);
         cli_put(row, "ci95", cli_numbers(2, p->ci95));
+        if (f->bootstrap.asked) cli_put(row, "ci95_bootstrap", cli_numbers(2, p->ci95_bootstrap));
         cli_put_flag(row, "fixed", p->fixed);
         cli_put_flag(row, "identifiable", p->identifiable);
         json_array_append_new(parameters, row);
@@ -65,6 +66,7 @@ static void put_verdicts(json_t *json, const sn_fit_result *f) {
     cli_put_flag(json, "identifiable", f->identifiable);
     cli_put(json, "not_identifiable", reasons);
     cli_put_text(json, "weakest_combination", f->weakest);
+    cli_put_text(json, "determined_combination", f->determined);
 }
 
 static json_t *curves_json(const fit_outcome *o) {
@@ -75,12 +77,14 @@ static json_t *curves_json(const fit_outcome *o) {
         json_t *row = json_object(), *worst = json_object();
         cli_put_text(row, "file", o->data->path[k]);
         cli_put_text(row, "sha256", o->data->sha256[k]);
-        cli_put_integer(row, "points", c->count);
-        cli_put(row, "window", cli_numbers(2, (double[]){m->time[0], m->time[m->count - 1]}));
-        cli_put_number(row, "weight", 1.0);
+        cli_put_integer(row, "points", c->used);
+        cli_put(row, "window",
+                cli_numbers(2, (double[]){m->time[c->first], m->time[c->first + c->used - 1]}));
+        cli_put_number(row, "weight", c->weight);
         cli_put_number(row, "rmse_Pa", c->rmse);
         cli_put_number(row, "rmse_over_peak", c->rmse / c->peak);
         cli_put_number(row, "r_squared", c->r_squared);
+        cli_put_number(row, "durbin_watson", c->durbin_watson);
         cli_put_number(worst, "time_s", m->time[c->worst]);
         cli_put_number(worst, "measured_Pa", m->stress[c->worst]);
         cli_put_number(worst, "fitted_Pa", c->predicted[c->worst]);
@@ -124,6 +128,7 @@ json_t *fit_json(const fit_outcome *o) {
     cli_put_text(json, "reason", f->reason);
     cli_put_integer(json, "points", f->points);
     cli_put(json, "data", curves_json(o));
+    fit_details_json(json, o);
     sn_exponentials e;
     if (compress(o, &e)) cli_put(json, "memory_as_exponentials", cli_exponentials(&e));
     if (o->has_held_out) cli_put(json, "held_out", held_out_json(o));
@@ -163,6 +168,7 @@ void fit_print(const fit_outcome *o) {
         printf("  memory as %d exponentials: error at most %.2g of G(0) from %s to %s\n", e.terms,
                e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
     if (!f->converged) printf("  the search did not converge: %s\n", f->reason);
+    fit_details_print(o);
 }
 
 //---- page ----------------------------------------------------------------------------------------
@@ -269,14 +275,11 @@ static void residual_plot(sn_report *report, const fit_outcome *o) {
     int used = 0;
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *m = &o->data->curve[k];
-        line[k] = (sn_line){cli_basename(o->data->path[k]),
-                            SN_LINE_POINTS,
-                            k % 8,
-                            m->count,
-                            m->time,
-                            residual + used};
-        for (int i = 0; i < m->count; i++)
-            residual[used++] = m->stress[i] - o->fit->curve[k].predicted[i];
+        line[k] = (sn_line){
+            cli_basename(o->data->path[k]),   SN_LINE_POINTS, k % 8, o->fit->curve[k].used,
+            m->time + o->fit->curve[k].first, residual + used};
+        for (int i = 0, at = o->fit->curve[k].first; i < o->fit->curve[k].used; i++, at++)
+            residual[used++] = m->stress[at] - o->fit->curve[k].predicted[at];
     }
     sn_report_plot(report, &(sn_plot){.title = "Residuals",
                                       .x_label = "time [s]",
@@ -307,14 +310,13 @@ static void memory_plot(sn_report *report, const fit_outcome *o) {
              "G(0) from %s to %s.",
              e.terms, e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
     sn_line line[] = {{memory->law->name, SN_LINE, 0, G_POINTS, t, exact},
-                      {label, SN_DASHED, 1, G_POINTS, t, sum},
-                      {"weights g at their times", SN_BARS, 2, e.terms, e.tau, e.g}};
+                      {label, SN_DASHED, 1, G_POINTS, t, sum}};
     sn_report_plot(report, &(sn_plot){.title = "Reduced relaxation function",
                                       .x_label = "time [s]",
                                       .y_label = "G [1]",
                                       .caption = caption,
                                       .log_x = true,
-                                      .line_count = 3,
+                                      .line_count = 2,
                                       .line = line});
 }
 
@@ -339,6 +341,10 @@ sn_status fit_report(const char *path, const fit_outcome *o) {
     residual_plot(report, o);
     if (o->has_held_out) fit_plot(report, o, true, true);
     memory_plot(report, o);
+    sn_exponentials e;
+    bool memory = f->tissue.memory.law->param_count > 0 && compress(o, &e);
+    fit_details_plots(report, o, memory ? &e : NULL);
+    fit_details_page(report, o);
     sn_report_heading(report, "Data");
     for (int k = 0; k < o->data->count; k++)
         sn_report_text(report, "%s, SHA-256 %s. %s", o->data->path[k], o->data->sha256[k],

@@ -147,3 +147,32 @@ static inline sn_curve oracle_curve(const char *name, int n, const double *time,
     }
     return c;
 }
+
+/// A curve of the virtual machine: 1 -> 1.15 in `ramp` seconds, held for 300 s (relaxation) or
+/// cycled five times.
+static inline sn_curve oracle_test(const sn_tissue *tissue, sn_protocol_kind kind, double ramp,
+                                   int points) {
+    sn_protocol protocol = sn_protocol_default(kind);
+    sn_record *record = NULL;
+    sn_curve curve = {0};
+    protocol.stretch = 1.15;
+    protocol.ramp = ramp;
+    protocol.hold = 300.0;
+    protocol.cycles = 5;
+    protocol.points = points;
+    CHECK_OK(sn_lab_test(tissue, &protocol, &record));
+    CHECK_OK(sn_curve_from_record(record, &curve));
+    sn_record_destroy(record);
+    return curve;
+}
+
+static inline double oracle_peak(const sn_curve *curve) {
+    double peak = 0.0;
+    for (int i = 0; i < curve->count; ++i) peak = fmax(peak, fabs(curve->stress[i]));
+    return peak;
+}
+
+/// Adds normal noise of a given size, Pa, to every row.
+static inline void oracle_noise(sn_curve *curve, double size, uint64_t *seed) {
+    for (int i = 0; i < curve->count; ++i) curve->stress[i] += size * oracle_normal(seed);
+}

@@ -13,7 +13,8 @@ static sn_fit_def joint(const char *law, const sn_curve *curve, int count) {
 
 // An independent fit of the full records (100 rows each) reaches R2 = 0.980; of these reduced
 // tables 0.97 is asked. The fastest ramp has a peak that the law misses, and the shortest
-// relaxation time is hidden: only an upper end of its interval is found.
+// relaxation time is hidden: only an upper end of its interval is found, and the stiffness hangs on
+// it.
 static void four_ramps_together(void **state) {
     (void)state;
     sn_curve curve[CARDIAC_RAMPS];
@@ -30,7 +31,10 @@ static void four_ramps_together(void **state) {
         for (int k = 0; k < r->param_count; ++k) {
             const sn_fit_param *p = &r->param[k];
             bool hidden = strcmp(p->name, "tau1") == 0;
-            assert_true(p->identifiable == !hidden);
+            // the stiffness trades off with tau1, whose interval is open below
+            bool stiffness = strcmp(p->unit, "Pa") == 0 && !p->fixed;
+            assert_true(p->identifiable == !(hidden || stiffness));
+            if (stiffness) assert_non_null(strstr(p->reason, "tied to tau1"));
             if (!hidden) continue;
             assert_true(p->profiled && p->ci95[1] < 0.1 / 3.0);
             assert_true(strstr(p->reason, "bound") || strstr(p->reason, "interval"));

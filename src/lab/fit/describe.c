@@ -11,6 +11,9 @@
 //     or more than the value apart where it is not.
 //  5. Its interval is moderately wide (a factor of 2, or 0.7 of the value) and it is tied to
 //     another constant by a correlation beyond 0.98: only a combination of the two is known.
+//  6. Its interval is not narrow (ends 1.25 times apart, or a quarter of the value) and it is tied
+//     by a correlation beyond 0.98 to a constant whose interval is open: the bounds of the search
+//     cut its interval, not the data.
 // A correlation alone is no reason: B and C of an exponential law are tied in every test, and
 // narrow intervals of both say that the data tell them apart.
 #include <math.h>
@@ -21,6 +24,7 @@
 
 static const double hidden = 1.0 / 3.0, wide_factor = 10.0, wide_part = 1.0;
 static const double moderate_factor = 2.0, moderate_part = 0.7, tied = 0.98;
+static const double narrow_factor = 1.25, narrow_part = 0.25;
 
 // wider than the factor (logarithmic constants) or part of the value (the others)
 static bool wider(const sn_fit_constant *c, const sn_fit_param *p, double factor, double part) {
@@ -100,6 +104,30 @@ static void because_of_tie(const sn_problem *problem, const sn_spread *spread, i
              problem->constant[problem->free[partner]].name, spread->correlation[j * n + partner]);
 }
 
+static bool open_ended(const sn_fit_constant *c, const sn_fit_param *p) {
+    return meets(c, p->ci95[0], c->low) || meets(c, p->ci95[1], c->high);
+}
+
+static void because_of_open_partners(const sn_problem *problem, const sn_spread *spread,
+                                     sn_fit_result *result) {
+    int n = problem->free_count;
+    for (int j = 0; j < n; ++j) {
+        sn_fit_param *p = &result->param[problem->free[j]];
+        const sn_fit_constant *c = &problem->constant[problem->free[j]];
+        for (int k = 0; k < n && p->identifiable; ++k) {
+            const sn_fit_constant *other = &problem->constant[problem->free[k]];
+            double r = spread->correlation[j * n + k];
+            if (k == j || fabs(r) <= tied || !wider(c, p, narrow_factor, narrow_part)) continue;
+            if (!open_ended(other, &result->param[problem->free[k]])) continue;
+            snprintf(p->reason, sizeof p->reason,
+                     "tied to %s (correlation %.3f), whose interval is open: the bounds of the "
+                     "search cut this one",
+                     other->name, r);
+            p->identifiable = false;
+        }
+    }
+}
+
 static void judge(const sn_problem *problem, const sn_spread *spread, int j, sn_fit_param *p) {
     const sn_fit_constant *c = &problem->constant[problem->free[j]];
     bool low = meets(c, p->value, c->low), high = meets(c, p->value, c->high);
@@ -122,7 +150,7 @@ static void describe_constants(const sn_problem *problem, sn_fit_result *result)
         const sn_fit_constant *c = &problem->constant[k];
         sn_fit_param *p = &result->param[k];
         *p = (sn_fit_param){.fixed = !c->free, .identifiable = true, .standard_error = (double)NAN};
-        p->ci95[0] = p->ci95[1] = (double)NAN;
+        p->ci95[0] = p->ci95[1] = p->ci95_bootstrap[0] = p->ci95_bootstrap[1] = (double)NAN;
         p->value = (c->in_memory ? problem->tissue.memory.value : problem->tissue.value)[c->index];
         snprintf(p->name, sizeof p->name, "%s", c->name);
         snprintf(p->unit, sizeof p->unit, "%s", c->param->unit);
@@ -181,5 +209,7 @@ sn_status sn_describe(sn_problem *problem, sn_found *best, bool last, sn_fit_res
         judge(problem, &spread, j, p);
         result->identifiable = result->identifiable && p->identifiable;
     }
+    because_of_open_partners(problem, &spread, result);
+    sn_describe_determined(problem, &spread, result);
     return SN_OK;
 }

@@ -198,7 +198,7 @@ static sn_status add_curve(sn_problem *p, int k, const double *time) {
     int end = ramp_end(curve);
     for (int i = 1; i <= end; ++i) p->sampling = fmin(p->sampling, time[i] - time[i - 1]);
     p->ramp = fmin(p->ramp, time[end] - time[0]);
-    p->record = fmax(p->record, time[curve->count - 1] - time[0]);
+    p->record = fmax(p->record, fmin(time[curve->count - 1], p->def->to) - time[0]);
     sn_history *history;
     SN_TRY(sn_history_create(1, curve->count, time, curve->stretch, &history));
     sn_status status = sn_path_create(history, curve->count, time, &p->path[k]);
@@ -248,9 +248,11 @@ static sn_status set_data(sn_problem *p) {
             return sn_fail(SN_E_RANGE, "%s: weight %g: expected a number above 0",
                            def->curve[k].name, weight);
         for (int i = 0; i < def->curve[k].count; ++i, ++at) {
+            bool in = sn_problem_in_window(def, &def->curve[k], i);
             p->measured[at] = def->curve[k].stress[i];
-            p->weight[at] = sqrt(weight);
-            p->norm += weight * p->measured[at] * p->measured[at];
+            p->weight[at] = in ? sqrt(weight) : 0.0;
+            p->norm += in ? weight * p->measured[at] * p->measured[at] : 0.0;
+            p->used += in;
         }
     }
     return SN_OK;
@@ -292,9 +294,9 @@ sn_status sn_problem_create(const sn_fit_def *def, sn_problem **problem) {
     sn_status status;
     SN_TRY_GOTO(status, set_data(p));
     SN_TRY_GOTO(status, set_constants(p));
-    if (p->points <= p->free_count) {
+    if (p->used <= p->free_count) {
         status = sn_fail(SN_E_DATA, "%s%s: %d rows for %d constants: expected more rows than that",
-                         def->curve[0].name, def->curve_count > 1 ? " and others" : "", p->points,
+                         def->curve[0].name, def->curve_count > 1 ? " and others" : "", p->used,
                          p->free_count);
         goto fail;
     }

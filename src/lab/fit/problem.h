@@ -27,6 +27,7 @@ typedef struct sn_problem {
     int free[SN_FIT_PARAMS_MAX]; ///< constants that are searched
     bool scalable;               ///< stress is proportional to the free constants that are stresses
     int points;                  ///< of all curves
+    int used;                    ///< of them within the window; the others have weight 0
     sn_path *path[SN_FIT_CURVES_MAX];
     double *measured, *weight, *model; ///< Pa, factor of a residual, Pa     (points)
     double norm;                       ///< weighted sum of squares of the measurements
@@ -53,5 +54,9 @@ void sn_problem_set(sn_problem *problem, const double *x);
 bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual);
 /// Sum of squares after the best common factor on the free stresses; that factor goes into x.
 double sn_problem_scaled_sum(sn_problem *problem, double *x, double *residual);
+/// Whether a row of a curve is fitted: rows outside the window only move the model.
+bool sn_problem_in_window(const sn_fit_def *def, const sn_curve *curve, int row);
+/// Number of residuals of curve k; those of the curves stand one after the other.
+int sn_problem_rows(const sn_problem *problem, int k);
 /// Sum of squares of n numbers.
 double sn_sum_squares(int n, const double *x);

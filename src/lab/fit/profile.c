@@ -75,7 +75,7 @@ sn_status sn_profile(sn_problem *problem, const sn_found *best, const sn_spread 
                      double interval[2], sn_found *better, bool *improved) {
     const sn_fit_constant *c = &problem->constant[problem->free[j]];
     double bound[2] = {sn_problem_scaled(c, c->low), sn_problem_scaled(c, c->high)};
-    double nu = problem->points - problem->free_count, range = bound[1] - bound[0];
+    double nu = problem->used - problem->free_count, range = bound[1] - bound[0];
     double t = spread->student, first = fmin(fmax(t * spread->error[j], 1e-4 * range), 0.1 * range);
     *improved = false;
     for (int side = 0; side < 2; ++side) {

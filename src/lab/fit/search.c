@@ -230,7 +230,7 @@ static sn_status search_part(sn_problem *whole, sn_found *best) {
     if (!thin) return SN_E_MEMORY;
     def.curve = thin;
     sn_status status = SN_OK;
-    int step = whole->points / START_ROWS;
+    int step = whole->used / START_ROWS;
     for (int k = 0; k < def.curve_count && status == SN_OK; ++k) {
         const sn_curve *curve = &whole->def->curve[k];
         // a short curve among long ones keeps a few dozen rows
@@ -255,7 +255,7 @@ static sn_status search_part(sn_problem *whole, sn_found *best) {
 static sn_status find_start(cube *c, sn_found *best) {
     sn_problem *p = c->problem;
     int most = 2 * (START_ROWS + START_LEAST * p->def->curve_count); // the part is below this
-    if (p->points <= most) {
+    if (p->used <= most) {
         SN_TRY(global(c));
         return refine(c, best);
     }

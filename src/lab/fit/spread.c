@@ -121,7 +121,7 @@ static void invert(int n, const double *scale, double variance, double *A, sn_sp
 
 sn_status sn_spread_at(sn_problem *problem, const sn_found *best, sn_spread *spread) {
     int n = problem->free_count, m = problem->points;
-    *spread = (sn_spread){.condition = 1.0, .student = sn_student_975(m - n)};
+    *spread = (sn_spread){.condition = 1.0, .student = sn_student_975(problem->used - n)};
     if (n == 0) return SN_OK;
     double *J = sn_alloc((size_t)m * (size_t)(n + 2), sizeof *J);
     if (!J) return SN_E_MEMORY;
@@ -140,7 +140,7 @@ sn_status sn_spread_at(sn_problem *problem, const sn_found *best, sn_spread *spr
                 sum += J[(size_t)i * (size_t)m + (size_t)k] * J[(size_t)j * (size_t)m + (size_t)k];
             A[i * n + j] = sum / scale[i] / scale[j];
         }
-    invert(n, scale, best->sum / (m - n), A, spread);
+    invert(n, scale, best->sum / (problem->used - n), A, spread);
     sn_free(J);
     return SN_OK;
 }
