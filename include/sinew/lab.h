@@ -117,27 +117,58 @@ typedef struct sn_curve {
     char remarks[SN_TEXT_MAX * 2]; ///< what was done to the data, in words
 } sn_curve;
 
+/// Rows at the time of the row before are left out; a few rows that came late by a few places are
+/// put back (at most 1 % of the rows, by at most 5 places), and gaps are said.
 /// @return SN_OK, SN_E_DATA (a column or a quantity is missing, times go backwards, too few rows).
 SN_API sn_status sn_curve_from_record(const sn_record *record, sn_curve *curve);
 SN_API void sn_curve_release(sn_curve *curve);
 
-/// Value or NAN with a reason.
+/// How a tensile curve is reduced. Fill from sn_tensile_def_default().
+typedef struct sn_tensile_def {
+    double preload;  ///< nominal stress at the zero of strain, Pa; 0: strain is stretch - 1
+    double from, to; ///< strains between which the modulus is taken; NAN: found in the data
+    int ramp;        ///< loading ramp to use, from 1; 0: the last that reaches 90 % of the largest
+} sn_tensile_def;
+SN_API sn_tensile_def sn_tensile_def_default(void);
+
+/// Values, NAN with a reason. Strain is stretch - 1, or from the preload where one is asked for.
 typedef struct sn_tensile {
-    double youngs_modulus;
+    int first, last, ultimate;   ///< rows of the curve: the loading ramp, its largest stress
+    int ramps, ramp;             ///< loading ramps found; the one used, from 1
+    double preload_stretch;      ///< stretch at the zero of strain; 1 without a preload
+    double stress_noise;         ///< scatter of the stress about a smooth curve, Pa
+    double youngs_modulus;       ///< Pa
+    double youngs_modulus_error; ///< its standard error from the scatter about the line
     char modulus_method[SN_TEXT_MAX];
-    double toe_modulus;       ///< slope over the first tenth of the strain
-    double max_slope_modulus; ///< slope of the steepest tenth of the strain before the ultimate
+    double chord_modulus;         ///< between the ends of the modulus' window
+    double toe_modulus;           ///< slope over the first tenth of the strain
+    double toe_limit, toe_stress; ///< where the slope reaches half of the steepest; NAN: no toe
+    char toe_reason[SN_TEXT_MAX]; ///< why there is no toe
+    double max_slope_modulus;     ///< slope of the steepest tenth of the strain to the ultimate
     double yield_stress, yield_strain; ///< 0.2 % offset; NAN where the line never meets the curve
     char reason[SN_TEXT_MAX];          ///< why there is no yield
     double ultimate_tensile_strength, strain_at_ultimate;
-    double work_to_failure;        ///< J/m3
-    double B, C, slope_r_squared;  ///< slope against stress (equation 13)
-    int window_first, window_last; ///< rows of the modulus
+    double work_to_failure;       ///< J/m3
+    double B, C, slope_r_squared; ///< slope against stress (equation 13)
+    double slope_window;          ///< strain over which a local slope is taken, from the noise
+    double slope_curvature;       ///< bend of slope against stress over the range of slopes
+    double slope_curvature_t;     ///< the bend over its standard error
+    char slope_test[SN_TEXT_MAX]; ///< whether that is a straight line, in words
+    int slope_count;
+    double *slope_stress, *slope;  ///< local slopes and their stresses, owned    (slope_count)
+    int window_first, window_last; ///< rows of the modulus, of the curve
+    int discarded;                 ///< rows of the curve that were not used
+    char remarks[SN_TEXT_MAX * 2]; ///< which and why
 } sn_tensile;
-/// Young's modulus, 0.2 % offset yield, strength, work to failure and slope against stress of a
-/// curve pulled until it fails (or ends). Strain is stretch - 1, stress nominal.
-/// @return SN_OK, SN_E_DATA (constant stretch, fewer than 5 rows up to the largest stress).
-SN_API sn_status sn_reduce_tensile(const sn_curve *curve, sn_tensile *out);
+/// Young's modulus, 0.2 % offset yield, strength, work to failure and slope against stress of one
+/// loading ramp: from where the stretch leaves its lowest to where it first stands at its highest,
+/// so that a hold, an unloading and other cycles have no say. Stress is nominal.
+/// @param def  Nullable: the default
+/// @return SN_OK, SN_E_DATA (constant stretch, fewer than 5 rows up to the largest stress, the
+/// preload outside the stresses), SN_E_RANGE (the window, the ramp), SN_E_MEMORY.
+SN_API sn_status sn_reduce_tensile(const sn_curve *curve, const sn_tensile_def *def,
+                                   sn_tensile *out);
+SN_API void sn_tensile_release(sn_tensile *tensile);
 
 /// One triangle: rows of its start, its largest stretch and its end.
 typedef struct sn_cycle {
@@ -149,40 +180,103 @@ typedef struct sn_cycle {
 typedef struct sn_cycles {
     int count;
     sn_cycle *cycle;           ///< owned
+    int discarded;             ///< rows before the first and after the last cycle
     char remarks[SN_TEXT_MAX]; ///< rows left out and why; empty where all were used
+    double peak_change;        ///< last cycle against the one before, over it; NAN for one cycle
+    double hysteresis_change;  ///< the same of the hysteresis
+    int preconditioned_after;  ///< cycles until neither changes by more than 2 %; 0: not reached
+    char reason[SN_TEXT_MAX];  ///< why not
 } sn_cycles;
-/// Splits a curve at the turns of its stretch (turns smaller than 5 % of the range are noise) and
-/// gives the hysteresis of every cycle; a last cycle that is not finished is left out.
+/// Splits a curve at the turns of its stretch (turns smaller than 5 % of the range, or than eight
+/// times the scatter of the stretch, are noise) and gives the hysteresis of every cycle. Rows
+/// before the first lowest stretch and a last cycle that is not finished are left out; holds
+/// between cycles are not. After cycle `preconditioned_after` no cycle differs by more than 2 %
+/// from the one before it, neither in peak stress nor in hysteresis (or there by no more than
+/// 0.002).
 /// @return SN_OK, SN_E_DATA (constant stretch, no full cycle), SN_E_MEMORY.
 SN_API sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out);
 SN_API void sn_cycles_release(sn_cycles *cycles);
 
+#define SN_RELAXATION_POINTS 128 ///< most points of a reduced relaxation curve
+
 typedef struct sn_relaxation_result {
-    double ramp_s; ///< end of the ramp, found in the data, from its start
+    int start, end, last; ///< rows: the ramp's first and last, the last of the hold
+    int peak;             ///< row of the largest stress
+    int steps, step;      ///< ramps with a hold in the record, and the one used, from 1
+    double held_stretch;
+    double overshoot; ///< largest stretch over the held one, over the change; 0: none
+    double ramp_s;    ///< end of the ramp, found in the data, from its start
+    double hold_s;    ///< from there to the last row of the hold
     double peak_stress;
-    double final_stress;
+    double final_stress;     ///< at the end of the hold
     double relaxed_fraction; ///< (peak - final)/peak
     double rate_per_decade;  ///< fall of stress over peak per decade of time after the peak
+    /// The fall on log time: means over tenths of a decade of time since the peak and of stress
+    /// over peak.
+    int points;
+    double point_s[SN_RELAXATION_POINTS], point_G[SN_RELAXATION_POINTS];
+    int discarded;             ///< rows before the ramp and after the hold
+    char remarks[SN_TEXT_MAX]; ///< other steps and rows left out
 } sn_relaxation_result;
-/// Properties of a ramp and hold. The ramp ends at the first row within 1 % of the plateau.
-/// @return SN_OK, SN_E_DATA (no time, constant stretch, no hold of at least 3 rows).
+/// Properties of a ramp and hold. A hold is at least 3 rows within 1 % of the range of the stretch
+/// (six times its scatter where that is more), a quarter of the ramp's time or longer. The ramp
+/// ends at the first row within 1 % of the held stretch, or at the largest where it overshoots by
+/// more. Of several steps the largest is used, the first of equal ones; the rest is said.
+/// @return SN_OK, SN_E_DATA (no time, constant stretch, no ramp with a hold), SN_E_MEMORY.
 SN_API sn_status sn_reduce_relaxation(const sn_curve *curve, sn_relaxation_result *out);
 
 typedef struct sn_creep_result {
-    double stress;             ///< held nominal stress over that of the first row, Pa
+    double stress;             ///< held nominal stress over that before the loading, Pa
     double ramp_s, hold_s;     ///< the loading, and the time under the stress, found in the data
     double initial_compliance; ///< strain over stress at the start of the hold, 1/Pa
     double compliance;         ///< the same at its end
     double creep_rate;         ///< smallest slope of the strain over a quarter of the hold, 1/s
     double time_to_rupture;    ///< from the start of the hold, s; NAN where it did not break
     double recovered_fraction; ///< of the strain at the end of the hold; NAN where not unloaded
+    char rupture_reason[SN_TEXT_MAX], recovery_reason[SN_TEXT_MAX]; ///< why there is none
+    char remarks[SN_TEXT_MAX]; ///< what the rows before the loading were used for
 } sn_creep_result;
-/// Properties of a creep test. Strain is stretch less that of the first row. The hold is from the
-/// first to the last row within 2 % of the held stress. The stress falling under half of it ends
-/// the test: as a rupture where the strain stands above that of the hold's end, as an unloading
-/// where it does not.
+/// Properties of a creep test. Strain is stretch less that of the rows before the loading. The hold
+/// is from the first to the last row within 2 % (or four scatters) of the held stress. The stress
+/// falling under half of it ends the test: as a rupture where the strain stands above that of the
+/// hold's end, as an unloading where it does not.
 /// @return SN_OK, SN_E_DATA (no time, no stress, the stress not held, fewer than 5 rows of hold).
 SN_API sn_status sn_reduce_creep(const sn_curve *curve, sn_creep_result *out);
+
+/// A sinusoidal test at one frequency. Moduli are d(nominal stress)/d(stretch).
+typedef struct sn_oscillation {
+    double frequency;                       ///< Hz
+    double storage_modulus, loss_modulus;   ///< Pa
+    double storage_error, loss_error;       ///< standard errors; NAN from a sweep
+    double tan_delta, phase;                ///< phase in rad
+    double mean_stretch, stretch_amplitude; ///< NAN from a sweep, as all that follows
+    double mean_stress, stress_amplitude;   ///< Pa
+    double harmonic_distortion; ///< root sum of squares of the harmonics 2 to 5 over the first
+    int first, last;            ///< rows of the curve that were fitted
+    double cycles;              ///< in these rows
+} sn_oscillation;
+typedef struct sn_dynamic {
+    int count;
+    sn_oscillation *at;                         ///< rising frequencies, owned              (count)
+    double storage_per_decade, loss_per_decade; ///< power laws: d log10 modulus / d log10 frequency
+    double low_plateau, high_plateau; ///< storage modulus at the ends where it is level, Pa; or NAN
+    char low_reason[SN_TEXT_MAX], high_reason[SN_TEXT_MAX]; ///< why not
+    double peak_tan_delta, peak_frequency;                  ///< of a peak within the record; or NAN
+    char peak_reason[SN_TEXT_MAX];                          ///< why not
+    int discarded;                                          ///< rows not used
+    char remarks[SN_TEXT_MAX * 2];                          ///< which and why
+} sn_dynamic;
+/// A sweep: columns frequency, storage_modulus, loss_modulus, in any order of rows.
+/// @return SN_OK, SN_E_DATA (a column is missing, values not above 0, a frequency twice),
+/// SN_E_MEMORY.
+SN_API sn_status sn_reduce_sweep(const sn_record *record, sn_dynamic *out);
+/// Raw sinusoids: the record is cut where period or amplitude change, and every part of 2 cycles or
+/// more fitted by least squares at its own frequency, stretch and stress with a mean and a drift,
+/// the stress with harmonics up to the fifth where the rows resolve them. Where a part has more
+/// than 3 cycles the first is left out, for what goes before it, and the last half.
+/// @return SN_OK, SN_E_DATA (no time, no part of 2 cycles), SN_E_MEMORY.
+SN_API sn_status sn_reduce_oscillation(const sn_curve *curve, sn_dynamic *out);
+SN_API void sn_dynamic_release(sn_dynamic *dynamic);
 
 //---- fitting -------------------------------------------------------------------------------------
 

@@ -1,21 +1,13 @@
 // sinew analyze: a measured curve to properties.
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/analyze.h"
+
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "cli/cli.h"
-
-typedef struct analysis {
-    const char *path, *test;
-    int rows;
-    bool headed; ///< the heading has been printed
-    json_t *json;
-    sn_report *report; ///< NULL without --out
-    bool quiet;        ///< nothing on standard output but JSON
-} analysis;
-
-static void say(analysis *a, const char *what, const char *value, const char *remark) {
+void analyze_say(analysis *a, const char *what, const char *value, const char *remark) {
     if (a->quiet) return;
     // nothing is printed before the reduction has succeeded
     if (!a->headed) printf("%s: %s test, %d rows\n", a->path, a->test, a->rows);
@@ -23,20 +15,12 @@ static void say(analysis *a, const char *what, const char *value, const char *re
     printf("  %-34s %s%s%s\n", what, value, *remark ? "   " : "", remark);
 }
 
-/// One line of a result: on standard output and in the table of the page.
-typedef struct finding {
-    const char *what, *value;
-    const char *remark; ///< Nullable
-} finding;
-
-#define FINDINGS_MAX 12
-
-static void present(analysis *a, const char *caption, int count, const finding *f) {
+void analyze_present(analysis *a, const char *caption, int count, const finding *f) {
     const char *cells[(FINDINGS_MAX + 1) * 3];
     int n = 0, columns = 2;
     SN_ASSERT(count <= FINDINGS_MAX);
     for (int i = 0; i < count; i++) {
-        say(a, f[i].what, f[i].value, f[i].remark ? f[i].remark : "");
+        analyze_say(a, f[i].what, f[i].value, f[i].remark ? f[i].remark : "");
         if (f[i].remark && *f[i].remark) columns = 3;
     }
     if (!a->report) return;
@@ -49,193 +33,22 @@ static void present(analysis *a, const char *caption, int count, const finding *
     sn_report_table(a->report, count + 1, columns, cells, caption);
 }
 
-#define PRESENT(a, caption, findings)                                                              \
-    present(a, caption, (int)(sizeof(findings) / sizeof(findings)[0]), findings)
+void analyze_discard(analysis *a, int rows, const char *remarks) {
+    a->discarded = rows;
+    snprintf(a->remarks, sizeof a->remarks, "%s", remarks);
+    if (*a->remarks) analyze_say(a, "rows", a->remarks, "");
+    if (a->report && *a->remarks) sn_report_text(a->report, "Rows: %s.", a->remarks);
+}
 
-static void stress_plot(sn_report *report, const char *title, int lines, const sn_line *line) {
+void analyze_stress_plot(sn_report *report, const char *title, const char *x_label, bool log_x,
+                         int lines, const sn_line *line) {
     sn_report_plot(report, &(sn_plot){.title = title,
-                                      .x_label = "stretch [1]",
+                                      .x_label = x_label,
                                       .y_label = "nominal stress [kPa]",
                                       .y_scale = 1e-3,
+                                      .log_x = log_x,
                                       .line_count = lines,
                                       .line = line});
-}
-
-//---- tensile -------------------------------------------------------------------------------------
-
-static json_t *tensile_json(const sn_tensile *r) {
-    json_t *json = json_object(), *slope = json_object();
-    cli_put_number(json, "youngs_modulus_Pa", r->youngs_modulus);
-    cli_put_text(json, "modulus_method", r->modulus_method);
-    cli_put_number(json, "toe_modulus_Pa", r->toe_modulus);
-    cli_put_number(json, "max_slope_modulus_Pa", r->max_slope_modulus);
-    cli_put_number(json, "yield_stress_Pa", r->yield_stress);
-    cli_put_number(json, "yield_strain", r->yield_strain);
-    if (*r->reason) cli_put_text(json, "reason", r->reason);
-    cli_put_number(json, "ultimate_tensile_strength_Pa", r->ultimate_tensile_strength);
-    cli_put_number(json, "strain_at_ultimate", r->strain_at_ultimate);
-    cli_put_number(json, "work_to_failure_J_per_m3", r->work_to_failure);
-    cli_put_number(slope, "B", r->B);
-    cli_put_number(slope, "C_Pa", r->C);
-    cli_put_number(slope, "r_squared", r->slope_r_squared);
-    cli_put(json, "slope_stress", slope);
-    return json;
-}
-
-static sn_status analyze_tensile(const sn_curve *curve, analysis *a) {
-    sn_tensile r;
-    SN_TRY(sn_reduce_tensile(curve, &r));
-    a->json = tensile_json(&r);
-    char work[64], slope[128], squared[64];
-    snprintf(work, sizeof work, "%.4g J/m3", r.work_to_failure);
-    snprintf(slope, sizeof slope, "B = %.4g, C = %s", r.B, cli_show(r.C, "Pa"));
-    snprintf(squared, sizeof squared, "R2 of the line %.4f", r.slope_r_squared);
-    const finding found[] = {
-        {"Young's modulus", cli_show(r.youngs_modulus, "Pa"), r.modulus_method},
-        {"toe modulus", cli_show(r.toe_modulus, "Pa"), NULL},
-        {"largest slope", cli_show(r.max_slope_modulus, "Pa"), NULL},
-        {"yield stress, 0.2 % offset", cli_show(r.yield_stress, "Pa"), r.reason},
-        {"ultimate tensile strength", cli_show(r.ultimate_tensile_strength, "Pa"), NULL},
-        {"strain at ultimate", cli_show(r.strain_at_ultimate, "1"), NULL},
-        {"work to failure", work, NULL},
-        {"slope against stress (13)", slope, squared},
-    };
-    PRESENT(a, "Tension", found);
-    if (!a->report) return SN_OK;
-    int n = r.window_last - r.window_first + 1;
-    sn_line lines[] = {{"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
-                       {"window of the modulus", SN_LINE, 1, n, curve->stretch + r.window_first,
-                        curve->stress + r.window_first}};
-    stress_plot(a->report, "Stress against stretch", 2, lines);
-    return SN_OK;
-}
-
-//---- cyclic --------------------------------------------------------------------------------------
-
-static sn_status analyze_cyclic(const sn_curve *curve, analysis *a) {
-    sn_cycles r;
-    SN_TRY(sn_reduce_cyclic(curve, &r));
-    if (*r.remarks) say(a, "data", r.remarks, "");
-    json_t *cycles = json_array();
-    for (int i = 0; i < r.count; i++) {
-        const sn_cycle *c = &r.cycle[i];
-        json_t *row = json_object();
-        cli_put_number(row, "hysteresis", c->hysteresis);
-        cli_put_number(row, "loading_area_J_per_m3", c->loading_area);
-        cli_put_number(row, "loop_area_J_per_m3", c->loop_area);
-        cli_put_number(row, "peak_stress_Pa", c->peak_stress);
-        json_array_append_new(cycles, row);
-        char what[32], value[160];
-        snprintf(what, sizeof what, "cycle %d", i + 1);
-        snprintf(value, sizeof value, "hysteresis %.4f, peak %s", c->hysteresis,
-                 cli_show(c->peak_stress, "Pa"));
-        say(a, what, value, "");
-    }
-    a->json = json_object();
-    cli_put(a->json, "cycles", cycles);
-    cli_put_text(a->json, "definition",
-                 "hysteresis = loop area / area under the loading curve, nominal stress");
-    if (a->report) {
-        sn_line line = {"measured", SN_LINE, 0, curve->count, curve->stretch, curve->stress};
-        stress_plot(a->report, "Cycles", 1, &line);
-        for (int i = 0; i < r.count; i++)
-            sn_report_text(a->report,
-                           "Cycle %d: hysteresis %.4f (loop area %.4g J/m3 over loading area "
-                           "%.4g J/m3), peak stress %s.",
-                           i + 1, r.cycle[i].hysteresis, r.cycle[i].loop_area,
-                           r.cycle[i].loading_area, cli_show(r.cycle[i].peak_stress, "Pa"));
-    }
-    sn_cycles_release(&r);
-    return SN_OK;
-}
-
-//---- relaxation ----------------------------------------------------------------------------------
-
-static sn_status analyze_relaxation(const sn_curve *curve, analysis *a) {
-    sn_relaxation_result r;
-    SN_TRY(sn_reduce_relaxation(curve, &r));
-    a->json = json_object();
-    cli_put_number(a->json, "peak_stress_Pa", r.peak_stress);
-    cli_put_number(a->json, "relaxed_fraction", r.relaxed_fraction);
-    cli_put_number(a->json, "rate_per_decade", r.rate_per_decade);
-    cli_put_number(a->json, "ramp_s", r.ramp_s);
-    cli_put_number(a->json, "final_stress_Pa", r.final_stress);
-    char fraction[32], rate[32];
-    snprintf(fraction, sizeof fraction, "%.1f %%", 100 * r.relaxed_fraction);
-    snprintf(rate, sizeof rate, "%.1f %%", 100 * r.rate_per_decade);
-    const finding found[] = {
-        {"ramp", cli_show(r.ramp_s, "s"), NULL},
-        {"peak stress", cli_show(r.peak_stress, "Pa"), NULL},
-        {"final stress", cli_show(r.final_stress, "Pa"), NULL},
-        {"relaxed fraction", fraction, "of the peak"},
-        {"relaxation per decade of time", rate, "of the peak"},
-    };
-    PRESENT(a, "Relaxation", found);
-    if (!a->report) return SN_OK;
-    sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stress};
-    sn_report_plot(a->report, &(sn_plot){.title = "Stress over time",
-                                         .x_label = "time [s]",
-                                         .y_label = "nominal stress [kPa]",
-                                         .y_scale = 1e-3,
-                                         .log_x = true,
-                                         .line_count = 1,
-                                         .line = &line});
-    stress_plot(
-        a->report, "Stress against stretch", 1,
-        &(sn_line){"measured", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress});
-    return SN_OK;
-}
-
-//---- creep ---------------------------------------------------------------------------------------
-
-static void creep_plot(const sn_curve *curve, sn_report *report) {
-    sn_line line = {"measured", SN_LINE_POINTS, 0, curve->count, curve->time, curve->stretch};
-    sn_report_plot(report, &(sn_plot){.title = "Stretch over time",
-                                      .x_label = "time [s]",
-                                      .y_label = "stretch [1]",
-                                      .line_count = 1,
-                                      .line = &line});
-    line.y = curve->stress;
-    sn_report_plot(report, &(sn_plot){.title = "Stress over time",
-                                      .x_label = "time [s]",
-                                      .y_label = "nominal stress [kPa]",
-                                      .y_scale = 1e-3,
-                                      .line_count = 1,
-                                      .line = &line});
-}
-
-static sn_status analyze_creep(const sn_curve *curve, analysis *a) {
-    sn_creep_result r;
-    SN_TRY(sn_reduce_creep(curve, &r));
-    a->json = json_object();
-    cli_put_number(a->json, "compliance_per_Pa", r.compliance);
-    cli_put_number(a->json, "initial_compliance_per_Pa", r.initial_compliance);
-    cli_put_number(a->json, "creep_rate_per_s", r.creep_rate);
-    cli_put_number(a->json, "time_to_rupture_s", r.time_to_rupture);
-    cli_put_number(a->json, "recovered_fraction", r.recovered_fraction);
-    cli_put_number(a->json, "stress_Pa", r.stress);
-    cli_put_number(a->json, "ramp_s", r.ramp_s);
-    cli_put_number(a->json, "hold_s", r.hold_s);
-    char initial[64], compliance[64], rate[64], recovered[64] = "—";
-    snprintf(initial, sizeof initial, "%.4g 1/Pa", r.initial_compliance);
-    snprintf(compliance, sizeof compliance, "%.4g 1/Pa", r.compliance);
-    snprintf(rate, sizeof rate, "%.4g 1/s", r.creep_rate);
-    if (isfinite(r.recovered_fraction))
-        snprintf(recovered, sizeof recovered, "%.1f %%", 100 * r.recovered_fraction);
-    const finding found[] = {
-        {"held stress", cli_show(r.stress, "Pa"), NULL},
-        {"loading", cli_show(r.ramp_s, "s"), NULL},
-        {"hold", cli_show(r.hold_s, "s"), NULL},
-        {"compliance, start of the hold", initial, NULL},
-        {"compliance, end of the hold", compliance, NULL},
-        {"creep rate, smallest", rate, NULL},
-        {"time to rupture", cli_show(r.time_to_rupture, "s"), NULL},
-        {"recovered, of the strain", recovered, NULL},
-    };
-    PRESENT(a, "Creep", found);
-    if (!a->report) return SN_OK;
-    creep_plot(curve, a->report);
-    return SN_OK;
 }
 
 //---- the command ---------------------------------------------------------------------------------
@@ -243,16 +56,24 @@ static sn_status analyze_creep(const sn_curve *curve, analysis *a) {
 typedef struct test_method {
     const char *name;
     sn_status (*analyze)(const sn_curve *curve, analysis *a);
+    sn_status (*sweep)(const sn_record *record, analysis *a); // NULL: takes no sweep over frequency
 } test_method;
 
 static const test_method methods[] = {
-    {"tensile", analyze_tensile},
-    {"cyclic", analyze_cyclic},
-    {"creep", analyze_creep},
-    {"relaxation", analyze_relaxation},
+    {"tensile", analyze_tensile, NULL},
+    {"cyclic", analyze_cyclic, NULL},
+    {"creep", analyze_creep, NULL},
+    {"relaxation", analyze_relaxation, NULL},
+    {"dynamic", analyze_sinusoids, analyze_sweep},
 };
 
 #define METHODS ((int)(sizeof methods / sizeof methods[0]))
+
+/// The options as they came.
+typedef struct analyze_options {
+    const char *test, *folder, *preload, *window;
+    int ramp;
+} analyze_options;
 
 static sn_status write_results(const char *folder, analysis *a) {
     char path[4096];
@@ -261,66 +82,144 @@ static sn_status write_results(const char *folder, analysis *a) {
     return sn_report_write(a->report, cli_path(path, sizeof path, folder, "report.html"));
 }
 
-static sn_status analyze(const char *path, const test_method *method, const char *folder,
-                         analysis *a) {
-    sn_record *record = NULL;
+// a stress, or a force over the area of the record
+static sn_status read_preload(const char *text, const sn_record *record, double *preload) {
+    double force;
+    if (sn_quantity_parse(text, "N", &force) == SN_OK) {
+        const sn_note *area = sn_record_note(record, "area");
+        if (!area || !(area->value > 0.0))
+            return sn_fail(
+                SN_E_DATA,
+                "%s: --preload %s is a force and needs a remark \"# area: ...\" with its "
+                "unit: add it, or give a stress",
+                record->name, text);
+        *preload = force / area->value;
+    } else {
+        sn_status status = sn_quantity_parse(text, "Pa", preload);
+        if (status != SN_OK) return sn_fail_within(status, "--preload");
+    }
+    if (isfinite(*preload) && *preload > 0.0) return SN_OK;
+    return sn_fail(SN_E_RANGE, "--preload: found %s, expected a force or a stress above 0", text);
+}
+
+static sn_status read_window(const char *text, sn_tensile_def *def) {
+    char *end;
+    def->from = strtod(text, &end);
+    bool good = end != text && *end == ',';
+    if (good) {
+        const char *second = end + 1;
+        def->to = strtod(second, &end);
+        good = end != second && !*end && isfinite(def->from) && isfinite(def->to) &&
+               def->to > def->from;
+    }
+    if (good) return SN_OK;
+    return sn_fail(SN_E_SYNTAX,
+                   "--window: found \"%s\", expected two rising strains with a comma, such as "
+                   "0.02,0.05",
+                   text);
+}
+
+// what was done to the data, and how many rows were not used
+static void put_data(const sn_curve *curve, analysis *a) {
+    json_t *remarks = json_array();
+    if (*curve->remarks) json_array_append_new(remarks, json_string(curve->remarks));
+    if (*a->remarks) json_array_append_new(remarks, json_string(a->remarks));
+    cli_put_integer(a->json, "rows", a->rows + curve->discarded);
+    cli_put_integer(a->json, "discarded", a->discarded + curve->discarded);
+    cli_put(a->json, "remarks", remarks);
+    if (*curve->remarks) analyze_say(a, "data", curve->remarks, "");
+}
+
+static sn_status reduce(const sn_record *record, const test_method *method, const char *folder,
+                        analysis *a) {
     sn_curve curve = {0};
-    sn_status status;
-    SN_TRY_GOTO(status, sn_curve_read(path, &record));
-    status = sn_curve_from_record(record, &curve);
+    bool sweep = method->sweep && sn_record_find(record, "frequency") >= 0;
+    sn_status status = SN_OK;
+    if (!sweep) status = sn_curve_from_record(record, &curve);
     if (status == SN_OK && folder) {
         char title[SN_TEXT_MAX];
-        snprintf(title, sizeof title, "%s: %s test", cli_basename(path), method->name);
+        snprintf(title, sizeof title, "%s: %s test", cli_basename(a->path), method->name);
         status = sn_report_create(title, &a->report);
     }
     if (status == SN_OK) {
-        a->rows = curve.count;
-        if (a->report) sn_report_text(a->report, "Data: %s. %s", path, curve.remarks);
-        status = method->analyze(&curve, a);
-        if (status == SN_OK && *curve.remarks) say(a, "data", curve.remarks, "");
+        a->rows = sweep ? record->rows : curve.count;
+        if (a->report)
+            sn_report_text(a->report, "Data: %s. %s%s", a->path, curve.remarks,
+                           *curve.remarks ? "." : "");
+        status = sweep ? method->sweep(record, a) : method->analyze(&curve, a);
     }
+    if (status == SN_OK) put_data(&curve, a);
     if (status == SN_OK && folder) status = write_results(folder, a);
-fail:
     sn_curve_release(&curve);
-    sn_record_destroy(record);
     sn_report_destroy(a->report);
     return status;
 }
 
+static sn_status analyze(const analyze_options *o, const test_method *method, analysis *a) {
+    sn_record *record = NULL;
+    sn_status status;
+    a->def = sn_tensile_def_default();
+    a->def.ramp = o->ramp;
+    SN_TRY_GOTO(status, sn_curve_read(a->path, &record));
+    if (o->preload) SN_TRY_GOTO(status, read_preload(o->preload, record, &a->def.preload));
+    if (o->window) SN_TRY_GOTO(status, read_window(o->window, &a->def));
+    status = reduce(record, method, o->folder, a);
+fail:
+    sn_record_destroy(record);
+    return status;
+}
+
+static int run_method(const analyze_options *o, const test_method *method,
+                      const cli_arguments *arguments) {
+    bool tensile = method->analyze == analyze_tensile;
+    if (!tensile && (o->preload || o->window || o->ramp))
+        return cli_refuse("analyze: --%s belongs to --test tensile, not to %s",
+                          o->preload  ? "preload"
+                          : o->window ? "window"
+                                      : "ramp",
+                          method->name);
+    analysis a = {.path = arguments->item[0],
+                  .test = method->name,
+                  .quiet = arguments->json || arguments->quiet};
+    sn_status status = analyze(o, method, &a);
+    if (status == SN_OK && arguments->json)
+        cli_print_json(a.json);
+    else
+        json_decref(a.json);
+    return status == SN_OK ? CLI_DONE : cli_fail(status);
+}
+
 static int run(const cli_command *command, int argc, char **argv) {
-    const char *test = NULL, *folder = NULL;
+    analyze_options o = {0};
     const cli_option options[] = {
-        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic, creep or relaxation"},
-        {"out", CLI_TEXT, "DIR", NULL, &folder, "writes analysis.json and report.html there"},
+        {"test", CLI_TEXT, "METHOD", NULL, &o.test,
+         "tensile, cyclic, creep, relaxation or dynamic"},
+        {"preload", CLI_TEXT, "QUANTITY", NULL, &o.preload,
+         "tensile: the strain is 0 where the curve reaches this force or stress"},
+        {"window", CLI_TEXT, "LO,HI", NULL, &o.window,
+         "tensile: strains between which the modulus is taken"},
+        {"ramp", CLI_INTEGER, "N", NULL, &o.ramp,
+         "tensile: which loading ramp (default: the last full one)"},
+        {"out", CLI_TEXT, "DIR", NULL, &o.folder, "writes analysis.json and report.html there"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 2, &arguments);
+    int code = cli_parse(command, argc, argv, options, (int)(sizeof options / sizeof options[0]),
+                         &arguments);
     if (code >= 0) return code;
     if (arguments.count != 1)
         return cli_refuse("analyze: expected one curve, got %d", arguments.count);
-    if (!test)
-        return cli_refuse("analyze: --test is missing: tensile, cyclic, creep or relaxation");
+    if (!o.test)
+        return cli_refuse(
+            "analyze: --test is missing: tensile, cyclic, creep, relaxation or dynamic");
     const char *names[METHODS];
     for (int k = 0; k < METHODS; k++) {
         names[k] = methods[k].name;
-        if (strcmp(test, names[k]) != 0) continue;
-        analysis a = {
-            .path = arguments.item[0], .test = test, .quiet = arguments.json || arguments.quiet};
-        sn_status status = analyze(arguments.item[0], &methods[k], folder, &a);
-        if (status != SN_OK) {
-            json_decref(a.json);
-            return cli_fail(status);
-        }
-        if (arguments.json)
-            cli_print_json(a.json);
-        else
-            json_decref(a.json);
-        return CLI_DONE;
+        if (strcmp(o.test, names[k]) == 0) return run_method(&o, &methods[k], &arguments);
     }
-    return cli_unknown("test", test, names, METHODS);
+    return cli_unknown("test", o.test, names, METHODS);
 }
 
 const cli_command cli_analyze = {
-    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation [--out DIR]",
+    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation|dynamic [--out DIR]",
     "properties of a measured curve: moduli, yield, strength, hysteresis, creep, relaxation",
     "sinew analyze data/cardiac-muscle/ramp-1s.csv --test relaxation", run};

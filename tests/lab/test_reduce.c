@@ -119,7 +119,7 @@ static void bilinear_curve_has_its_yield(void **state) {
         }
         sn_curve curve = oracle_curve("bilinear", ROWS, NULL, stretch, stress);
         sn_tensile out;
-        CHECK_OK(sn_reduce_tensile(&curve, &out));
+        CHECK_OK(sn_reduce_tensile(&curve, NULL, &out));
         CHECK_REL(out.youngs_modulus, E, 3e-3);
         CHECK_REL(out.toe_modulus, E, 1.0); // the first tenth may hold the bend: just a number
         CHECK_REL(out.yield_stress, sp + Ep * 0.002 / (1.0 - Ep / E), 1e-3);
@@ -127,6 +127,7 @@ static void bilinear_curve_has_its_yield(void **state) {
         CHECK_REL(out.strain_at_ultimate, 0.2, 1e-12);
         CHECK_REL(out.work_to_failure, area, 1e-12);
         assert_non_null(strstr(out.modulus_method, "initial straight part"));
+        sn_tensile_release(&out);
         sn_curve_release(&curve);
     }
 }
@@ -145,7 +146,7 @@ static void exponential_curve_has_no_yield(void **state) {
         }
         sn_curve curve = oracle_curve("exponential", rows, NULL, stretch, stress);
         sn_tensile out;
-        CHECK_OK(sn_reduce_tensile(&curve, &out));
+        CHECK_OK(sn_reduce_tensile(&curve, NULL, &out));
         assert_true(isnan(out.yield_stress) && isnan(out.yield_strain));
         assert_non_null(strstr(out.reason, "no intersection"));
         assert_non_null(strstr(out.modulus_method, "J-shaped"));
@@ -157,6 +158,7 @@ static void exponential_curve_has_no_yield(void **state) {
         assert_true(out.toe_modulus > C && out.toe_modulus < C * exp(B * 0.025));
         assert_true(out.youngs_modulus > C * exp(B * 0.175) &&
                     out.youngs_modulus < C * exp(B * 0.2));
+        sn_tensile_release(&out);
         sn_curve_release(&curve);
     }
 }
@@ -176,13 +178,14 @@ static void s_shaped_curve_yields_after_its_toe(void **state) {
     }
     sn_curve curve = oracle_curve("tendon", ROWS, NULL, stretch, stress);
     sn_tensile out;
-    CHECK_OK(sn_reduce_tensile(&curve, &out));
+    CHECK_OK(sn_reduce_tensile(&curve, NULL, &out));
     CHECK_REL(out.youngs_modulus, E, 1e-3);
     CHECK_REL(out.yield_stress, limit + Ep * 0.002 / (1.0 - Ep / E), 1e-3);
     CHECK_ABS(out.strain_at_ultimate, 0.18, 2.1e-4);
     double whole = 0.5 * E * toe * toe / 3.0 + 0.5 * (0.5 * E * toe + limit) * (bend - toe) +
                    limit * 0.09 + 0.5 * Ep * 0.09 * 0.09;
     CHECK_REL(out.work_to_failure, whole, 2e-3); // a row at the failure
+    sn_tensile_release(&out);
     sn_curve_release(&curve);
 }
 
@@ -194,22 +197,18 @@ static void unusable_pulls_are_refused(void **state) {
     sn_cycles cycles;
     sn_relaxation_result relaxation;
     sn_curve curve = oracle_curve("still", 6, up, same, up);
-    CHECK_FAILS(sn_reduce_tensile(&curve, &out), SN_E_DATA, "still: the stretch is 1.1");
+    CHECK_FAILS(sn_reduce_tensile(&curve, NULL, &out), SN_E_DATA, "still: the stretch is 1.1");
     CHECK_FAILS(sn_reduce_cyclic(&curve, &cycles), SN_E_DATA, "still: the stretch is 1.1");
     CHECK_FAILS(sn_reduce_relaxation(&curve, &relaxation), SN_E_DATA, "needs a ramp");
     sn_curve_release(&curve);
     curve = oracle_curve("falling", 6, up, l, down);
-    CHECK_FAILS(sn_reduce_tensile(&curve, &out), SN_E_DATA, "largest stress at row 1");
+    CHECK_FAILS(sn_reduce_tensile(&curve, NULL, &out), SN_E_DATA, "largest stress at row 1");
     CHECK_FAILS(sn_reduce_cyclic(&curve, &cycles), SN_E_DATA, "no full cycle");
     CHECK_FAILS(sn_reduce_relaxation(&curve, &relaxation), SN_E_DATA,
-                "1 rows at the final stretch");
+                "falling: no ramp with a hold");
     sn_curve_release(&curve);
     curve = oracle_curve("timeless", 6, NULL, l, up);
     CHECK_FAILS(sn_reduce_relaxation(&curve, &relaxation), SN_E_DATA, "no time column");
-    sn_curve_release(&curve);
-    const double away[] = {1.0, 1.2, 1.1, 1.2, 1.2, 1.2};
-    curve = oracle_curve("bounce", 6, up, away, up);
-    CHECK_FAILS(sn_reduce_relaxation(&curve, &relaxation), SN_E_DATA, "row 3: stretch 1.1 leaves");
     sn_curve_release(&curve);
 }
 

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lab/reduce/clean.h"
 #include "sinew/lab.h"
 
 // how a column becomes stretch or nominal stress: x the column, note the remark, stretch the row's
@@ -97,7 +98,7 @@ static sn_status allocate(sn_curve *curve, int rows, bool timed) {
     return curve->stretch && curve->stress && (!timed || curve->time) ? SN_OK : SN_E_MEMORY;
 }
 
-// One row into the curve. A row at the time of the row before cannot be told from it: left out.
+// One row into the curve.
 static sn_status take_row(const sn_record *record, int row, double time, double stretch,
                           double stress, sn_curve *curve) {
     int n = curve->count;
@@ -111,14 +112,6 @@ static sn_status take_row(const sn_record *record, int row, double time, double 
         if (!isfinite(time))
             return sn_fail(SN_E_DATA, "%s: row %d: time is %g, expected a number", record->name,
                            row + 1, time);
-        if (n > 0 && time < curve->time[n - 1])
-            return sn_fail(SN_E_DATA,
-                           "%s: row %d: time goes back from %g s to %g s: expected rising times",
-                           record->name, row + 1, curve->time[n - 1], time);
-        if (n > 0 && time == curve->time[n - 1]) {
-            curve->discarded++;
-            return SN_OK;
-        }
         curve->time[n] = time;
     }
     curve->stretch[n] = stretch;
@@ -145,12 +138,7 @@ static sn_status fill(const sn_record *record, sn_curve *curve) {
     }
     if (length->remark) remark(curve, length->remark);
     if (load->remark) remark(curve, load->remark);
-    if (curve->discarded > 0) {
-        char text[SN_TEXT_MAX];
-        snprintf(text, sizeof text, "%d row(s) at the time of the row before left out",
-                 curve->discarded);
-        remark(curve, text);
-    }
+    SN_TRY(sn_curve_clean(curve));
     if (curve->count < 3)
         return sn_fail(SN_E_DATA, "%s: %d usable rows: expected at least 3", record->name,
                        curve->count);

@@ -8,34 +8,17 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "sinew/lab.h"
+#include "lab/reduce/signal.h"
 
-static const double noise = 0.05; // of the range: smaller turns are not turns
+static const double turn_range = 0.05, turn_noise = 8.0; // a turn, of the range and the scatter
+static const double settled = 0.02;                      // change from cycle to cycle
+static const double settled_hysteresis = 0.002;          // where there is hardly any
 
 static double area(const sn_curve *c, int first, int last) {
     double sum = 0.0;
     for (int i = first + 1; i <= last; ++i)
         sum += 0.5 * (c->stress[i] + c->stress[i - 1]) * (c->stretch[i] - c->stretch[i - 1]);
     return sum;
-}
-
-// Rows of the turns, alternating lowest and highest, the first a lowest. A turn counts once the
-// stretch has come back from it by more than the noise; the last row stands for the end.
-static int find_turns(const sn_curve *c, double threshold, int *turn) {
-    int count = 0, extreme = 0;
-    bool rising = false; // a start at the top is left out by looking for a lowest first
-    for (int i = 1; i < c->count; ++i) {
-        double back = c->stretch[i] - c->stretch[extreme];
-        if (rising ? back >= 0.0 : back < 0.0) {
-            extreme = i; // equal tops: the last row of a plateau belongs to the way up
-        } else if (fabs(back) > threshold) {
-            turn[count++] = extreme;
-            rising = !rising;
-            extreme = i;
-        }
-    }
-    turn[count++] = extreme;
-    return count;
 }
 
 static sn_cycle cycle_of(const sn_curve *c, int first, int peak, int last) {
@@ -49,10 +32,64 @@ static sn_cycle cycle_of(const sn_curve *c, int first, int peak, int last) {
     return cycle;
 }
 
+static double change(double before, double after) {
+    return before != 0.0 ? (after - before) / fabs(before) : (double)NAN;
+}
+
+static bool same(const sn_cycle *before, const sn_cycle *after) {
+    double off = fabs(after->hysteresis - before->hysteresis);
+    return fabs(change(before->peak_stress, after->peak_stress)) <= settled &&
+           (off <= settled * fabs(before->hysteresis) || off <= settled_hysteresis);
+}
+
+static void preconditioning(sn_cycles *out) {
+    const sn_cycle *cycle = out->cycle;
+    int n = out->count;
+    out->peak_change = out->hysteresis_change = (double)NAN;
+    if (n < 2) {
+        snprintf(out->reason, sizeof out->reason, "one cycle: nothing to compare it with");
+        return;
+    }
+    out->peak_change = change(cycle[n - 2].peak_stress, cycle[n - 1].peak_stress);
+    out->hysteresis_change = change(cycle[n - 2].hysteresis, cycle[n - 1].hysteresis);
+    int first = n - 1;
+    while (first > 0 && same(&cycle[first - 1], &cycle[first])) --first;
+    if (first < n - 1)
+        out->preconditioned_after = first + 1;
+    else
+        snprintf(out->reason, sizeof out->reason,
+                 "from cycle %d to %d the peak stress changes by %.2g %% and the hysteresis by "
+                 "%.2g %%: settled is up to %g %%",
+                 n - 1, n, 100.0 * out->peak_change, 100.0 * out->hysteresis_change,
+                 100.0 * settled);
+}
+
+// full cycles from the turns, and what is left over
+static void split(const sn_curve *c, int turns, const int *turn, double threshold, sn_cycles *out) {
+    for (int k = 0; k + 2 < turns; k += 2) {
+        bool end = k + 2 == turns - 1; // of the record: back where the cycle started?
+        if (end && c->stretch[turn[k + 2]] > c->stretch[turn[k]] + threshold) break;
+        out->cycle[out->count++] = cycle_of(c, turn[k], turn[k + 1], turn[k + 2]);
+    }
+    if (out->count == 0) return;
+    int before = out->cycle[0].first, last = out->cycle[out->count - 1].last;
+    if (before > 0)
+        sn_remark(out->remarks, sizeof out->remarks,
+                  "%d row(s) before the first lowest stretch left out", before);
+    if (turns - 1 > 2 * out->count)
+        sn_remark(out->remarks, sizeof out->remarks,
+                  "the last cycle is not finished: %d rows after row %d left out",
+                  c->count - 1 - last, last + 1);
+    else if (last + 1 < c->count)
+        sn_remark(out->remarks, sizeof out->remarks, "%d row(s) after the last cycle left out",
+                  c->count - 1 - last);
+    out->discarded = before + c->count - 1 - last;
+}
+
 sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out) {
     SN_ASSERT(curve && out);
     *out = (sn_cycles){0};
-    double low = (double)INFINITY, high = -(double)INFINITY;
+    double low = (double)INFINITY, high = -(double)INFINITY, noise;
     for (int i = 0; i < curve->count; ++i) {
         low = fmin(low, curve->stretch[i]);
         high = fmax(high, curve->stretch[i]);
@@ -60,7 +97,8 @@ sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out) {
     if (!(high > low))
         return sn_fail(SN_E_DATA, "%s: the stretch is %g in every row: a cyclic test needs cycles",
                        curve->name, high);
-    double threshold = noise * (high - low);
+    SN_TRY(sn_stretch_scatter(curve, &noise));
+    double threshold = fmax(turn_range * (high - low), turn_noise * noise);
     int *turn = sn_alloc((size_t)curve->count + 1, sizeof *turn);
     out->cycle = sn_alloc((size_t)curve->count, sizeof *out->cycle);
     if (!turn || !out->cycle) {
@@ -68,19 +106,9 @@ sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out) {
         sn_cycles_release(out);
         return SN_E_MEMORY;
     }
-    int turns = find_turns(curve, threshold, turn), left = turns - 1;
-    for (int k = 0; k + 2 < turns; k += 2) {
-        bool end = k + 2 == turns - 1; // of the record: back where the cycle started?
-        if (end && curve->stretch[turn[k + 2]] > curve->stretch[turn[k]] + threshold) break;
-        out->cycle[out->count++] = cycle_of(curve, turn[k], turn[k + 1], turn[k + 2]);
-        left = turns - 1 - (k + 2);
-    }
-    if (left > 0)
-        snprintf(out->remarks, sizeof out->remarks,
-                 "the last cycle is not finished: %d rows after row %d left out",
-                 curve->count - 1 - (out->count ? out->cycle[out->count - 1].last : 0),
-                 (out->count ? out->cycle[out->count - 1].last : 0) + 1);
+    split(curve, sn_turns(curve->count, curve->stretch, threshold, turn), turn, threshold, out);
     sn_free(turn);
+    preconditioning(out);
     if (out->count > 0) return SN_OK;
     sn_cycles_release(out);
     return sn_fail(SN_E_DATA,
