@@ -238,6 +238,56 @@ static sn_status analyze_creep(const sn_curve *curve, analysis *a) {
     return SN_OK;
 }
 
+//---- biaxial -------------------------------------------------------------------------------------
+
+static json_t *biaxial_json(const sn_biaxial_result *r) {
+    static const char *const keys[2][4] = {
+        {"peak_stretch_1", "peak_stress_1_Pa", "low_modulus_1_Pa", "high_modulus_1_Pa"},
+        {"peak_stretch_2", "peak_stress_2_Pa", "low_modulus_2_Pa", "high_modulus_2_Pa"}};
+    json_t *json = json_object();
+    for (int k = 0; k < 2; k++) {
+        cli_put_number(json, keys[k][0], r->axis[k].peak_stretch);
+        cli_put_number(json, keys[k][1], r->axis[k].peak_stress);
+        cli_put_number(json, keys[k][2], r->axis[k].low_modulus);
+        cli_put_number(json, keys[k][3], r->axis[k].high_modulus);
+    }
+    cli_put_number(json, "stress_ratio", r->stress_ratio);
+    cli_put_number(json, "stretch_ratio", r->stretch_ratio);
+    cli_put_number(json, "anisotropy", r->anisotropy);
+    cli_put_number(json, "strain_energy_J_per_m3", r->energy);
+    return json;
+}
+
+static sn_status analyze_biaxial(const sn_curve *curve, analysis *a) {
+    sn_biaxial_result r;
+    SN_TRY(sn_reduce_biaxial(curve, &r));
+    a->json = biaxial_json(&r);
+    char stretches[64], stresses[64], index[32], energy[64];
+    snprintf(stretches, sizeof stretches, "at stretches %.4g and %.4g", r.axis[0].peak_stretch,
+             r.axis[1].peak_stretch);
+    snprintf(stresses, sizeof stresses, "strains %s", cli_show(r.stretch_ratio, "1"));
+    snprintf(index, sizeof index, "%.3f", r.anisotropy);
+    snprintf(energy, sizeof energy, "%.4g J/m3", r.energy);
+    const finding found[] = {
+        {"peak stress, axis 1", cli_show(r.axis[0].peak_stress, "Pa"), stretches},
+        {"peak stress, axis 2", cli_show(r.axis[1].peak_stress, "Pa"), NULL},
+        {"modulus at low stretch, axis 1", cli_show(r.axis[0].low_modulus, "Pa"), "first fifth"},
+        {"modulus at low stretch, axis 2", cli_show(r.axis[1].low_modulus, "Pa"), NULL},
+        {"modulus at high stretch, axis 1", cli_show(r.axis[0].high_modulus, "Pa"), "last fifth"},
+        {"modulus at high stretch, axis 2", cli_show(r.axis[1].high_modulus, "Pa"), NULL},
+        {"ratio 1 to 2 at the peak, stresses", cli_show(r.stress_ratio, "1"), stresses},
+        {"anisotropy", index, "above 0: axis 1 is stiffer"},
+        {"strain energy at the peak", energy, NULL},
+    };
+    PRESENT(a, "Biaxial tension", found);
+    if (!a->report) return SN_OK;
+    const sn_line lines[] = {
+        {"axis 1", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
+        {"axis 2", SN_LINE_POINTS, 1, curve->count, curve->stretch_2, curve->stress_2}};
+    stress_plot(a->report, "Stress against stretch, both axes", 2, lines);
+    return SN_OK;
+}
+
 //---- the command ---------------------------------------------------------------------------------
 
 typedef struct test_method {
@@ -246,10 +296,8 @@ typedef struct test_method {
 } test_method;
 
 static const test_method methods[] = {
-    {"tensile", analyze_tensile},
-    {"cyclic", analyze_cyclic},
-    {"creep", analyze_creep},
-    {"relaxation", analyze_relaxation},
+    {"tensile", analyze_tensile},       {"cyclic", analyze_cyclic},   {"creep", analyze_creep},
+    {"relaxation", analyze_relaxation}, {"biaxial", analyze_biaxial},
 };
 
 #define METHODS ((int)(sizeof methods / sizeof methods[0]))
@@ -290,7 +338,7 @@ fail:
 static int run(const cli_command *command, int argc, char **argv) {
     const char *test = NULL, *folder = NULL;
     const cli_option options[] = {
-        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic, creep or relaxation"},
+        {"test", CLI_TEXT, "METHOD", NULL, &test, "tensile, cyclic, creep, relaxation or biaxial"},
         {"out", CLI_TEXT, "DIR", NULL, &folder, "writes analysis.json and report.html there"},
     };
     cli_arguments arguments;
@@ -299,7 +347,8 @@ static int run(const cli_command *command, int argc, char **argv) {
     if (arguments.count != 1)
         return cli_refuse("analyze: expected one curve, got %d", arguments.count);
     if (!test)
-        return cli_refuse("analyze: --test is missing: tensile, cyclic, creep or relaxation");
+        return cli_refuse(
+            "analyze: --test is missing: tensile, cyclic, creep, relaxation or biaxial");
     const char *names[METHODS];
     for (int k = 0; k < METHODS; k++) {
         names[k] = methods[k].name;
@@ -321,6 +370,6 @@ static int run(const cli_command *command, int argc, char **argv) {
 }
 
 const cli_command cli_analyze = {
-    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation [--out DIR]",
+    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation|biaxial [--out DIR]",
     "properties of a measured curve: moduli, yield, strength, hysteresis, creep, relaxation",
     "sinew analyze data/cardiac-muscle/ramp-1s.csv --test relaxation", run};

@@ -13,22 +13,45 @@ sn_fit_def sn_fit_def_default(void) {
     return (sn_fit_def){.terms = 3, .law_terms = 1, .starts = 6, .seed = 1};
 }
 
-// fills all but `predicted` from it
+// fills all but what is predicted from it
 static void judge_curve(const sn_curve *curve, sn_fit_curve *out) {
     double mean = 0.0, sse = 0.0, sst = 0.0, largest = -1.0;
-    for (int i = 0; i < curve->count; ++i) mean += curve->stress[i] / curve->count;
-    for (int i = 0; i < curve->count; ++i) {
-        double residual = fabs(out->predicted[i] - curve->stress[i]);
+    int rows = sn_problem_rows(curve), n = curve->count;
+    for (int i = 0; i < rows; ++i)
+        mean += (i < n ? curve->stress[i] : curve->stress_2[i - n]) / rows;
+    for (int i = 0; i < rows; ++i) {
+        double measured = i < n ? curve->stress[i] : curve->stress_2[i - n];
+        double predicted = i < n ? out->predicted[i] : out->predicted_2[i - n];
+        double residual = fabs(predicted - measured);
         sse += residual * residual;
-        sst += (curve->stress[i] - mean) * (curve->stress[i] - mean);
-        out->peak = fmax(out->peak, fabs(curve->stress[i]));
+        sst += (measured - mean) * (measured - mean);
+        out->peak = fmax(out->peak, fabs(measured));
         if (residual > largest) {
             largest = residual;
-            out->worst = i;
+            out->worst = i % n;
+            out->second = i >= n;
         }
     }
-    out->rmse = sqrt(sse / curve->count);
+    out->rmse = sqrt(sse / rows);
     out->r_squared = sst > 0.0 ? 1.0 - sse / sst : (double)NAN;
+}
+
+// a copy of n numbers into *to
+static sn_status copy(int n, const double *from, double **to) {
+    *to = sn_alloc((size_t)n, sizeof **to);
+    if (!*to) return SN_E_MEMORY;
+    memcpy(*to, from, (size_t)n * sizeof **to);
+    return SN_OK;
+}
+
+// predicted stresses of both axes from one array
+static sn_status take_prediction(const sn_curve *curve, const double *stress, sn_fit_curve *out) {
+    out->count = curve->count;
+    SN_TRY(copy(curve->count, stress, &out->predicted));
+    if (curve->kind == SN_CURVE_BIAXIAL)
+        SN_TRY(copy(curve->count, stress + curve->count, &out->predicted_2));
+    judge_curve(curve, out);
+    return SN_OK;
 }
 
 static void judge_all(const sn_problem *p, const sn_found *best, sn_fit_result *r) {
@@ -51,13 +74,8 @@ static void judge_all(const sn_problem *p, const sn_found *best, sn_fit_result *
 static sn_status fill_curves(const sn_problem *p, sn_fit_result *r) {
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
         const sn_curve *curve = &p->def->curve[k];
-        sn_fit_curve *out = &r->curve[r->curve_count++];
-        out->count = curve->count;
-        out->predicted = sn_alloc((size_t)curve->count, sizeof *out->predicted);
-        if (!out->predicted) return SN_E_MEMORY;
-        memcpy(out->predicted, p->model + at, (size_t)curve->count * sizeof *out->predicted);
-        judge_curve(curve, out);
-        at += curve->count;
+        SN_TRY(take_prediction(curve, p->model + at, &r->curve[r->curve_count++]));
+        at += sn_problem_rows(curve);
     }
     return SN_OK;
 }
@@ -76,6 +94,7 @@ static void say_end(const sn_found *best, int restarts, sn_fit_result *r) {
 static sn_status search_and_describe(sn_problem *p, sn_fit_result *r) {
     sn_found best;
     SN_TRY(sn_search(p, &best));
+    sn_problem_settle(p, best.x);
     bool moved = true;
     int restarts = 0;
     while (moved) {
@@ -84,6 +103,7 @@ static sn_status search_and_describe(sn_problem *p, sn_fit_result *r) {
         if (!moved) break;
         restarts++;
         SN_TRY(sn_search_local(p, NULL, 1e-12, &best));
+        sn_problem_settle(p, best.x);
     }
     double *residual = sn_alloc((size_t)p->points, sizeof *residual);
     if (!residual) return SN_E_MEMORY;
@@ -111,31 +131,59 @@ sn_status sn_fit(const sn_fit_def *def, sn_fit_result *result) {
 
 void sn_fit_release(sn_fit_result *result) {
     if (!result) return;
-    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) sn_free(result->curve[k].predicted);
+    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) {
+        sn_free(result->curve[k].predicted);
+        sn_free(result->curve[k].predicted_2);
+    }
     memset(result->curve, 0, sizeof result->curve);
     result->curve_count = 0;
+}
+
+static sn_status predict_uniaxial(const sn_tissue *tissue, const sn_curve *curve, double *stress) {
+    sn_history *history;
+    SN_TRY(sn_history_create(1, curve->count, curve->time, curve->stretch, &history));
+    sn_status status = sn_lab_uniaxial(tissue, history, curve->count, curve->time, stress);
+    sn_history_destroy(history);
+    return status;
+}
+
+static sn_status predict_in_plane(const sn_tissue *tissue, const sn_curve *curve, double *stress) {
+    bool memory = tissue->memory.law->param_count > 0;
+    sn_exponentials e;
+    sn_in_plane *path;
+    SN_TRY(sn_in_plane_check(tissue, curve));
+    SN_TRY(sn_memory_expand(&tissue->memory, &e));
+    SN_TRY(sn_in_plane_create(curve, curve->time, tissue->law, memory, &path));
+    sn_status status = sn_in_plane_stress(path, tissue, &e, stress);
+    sn_in_plane_destroy(path);
+    return status;
 }
 
 sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve, sn_fit_curve *prediction) {
     SN_ASSERT(tissue && curve && prediction);
     *prediction = (sn_fit_curve){.count = curve->count};
-    if (!curve->time)
-        return sn_fail(SN_E_DATA, "%s: no time column: a prediction needs one", curve->name);
+    sn_curve timed = *curve; // without a memory time does not matter: row numbers stand for it
+    double *rows = NULL, *stress = NULL;
     SN_TRY(sn_tissue_check(tissue));
-    sn_history *history = NULL;
-    sn_status status;
-    SN_TRY_GOTO(status, sn_history_create(1, curve->count, curve->time, curve->stretch, &history));
-    status = SN_E_MEMORY;
-    prediction->predicted = sn_alloc((size_t)curve->count, sizeof *prediction->predicted);
-    if (!prediction->predicted) goto fail;
-    SN_TRY_GOTO(status,
-                sn_lab_uniaxial(tissue, history, curve->count, curve->time, prediction->predicted));
-    judge_curve(curve, prediction);
+    if (!curve->time && tissue->memory.law->param_count > 0)
+        return sn_fail(SN_E_DATA, "%s: no time column: a prediction with memory %s needs one",
+                       curve->name, tissue->memory.law->name);
+    sn_status status = SN_E_MEMORY;
+    rows = sn_alloc((size_t)curve->count, sizeof *rows);
+    stress = sn_alloc((size_t)sn_problem_rows(curve), sizeof *stress);
+    if (!rows || !stress) goto fail;
+    for (int i = 0; i < curve->count; ++i) rows[i] = i;
+    if (!timed.time) timed.time = rows;
+    SN_TRY_GOTO(status, (curve->kind == SN_CURVE_UNIAXIAL ? predict_uniaxial : predict_in_plane)(
+                            tissue, &timed, stress));
+    SN_TRY_GOTO(status, take_prediction(curve, stress, prediction));
 fail:
     if (status != SN_OK) {
         sn_free(prediction->predicted);
-        prediction->predicted = NULL;
+        sn_free(prediction->predicted_2);
+        prediction->predicted = prediction->predicted_2 = NULL;
     }
-    sn_history_destroy(history);
+    sn_free(rows);
+    sn_free(stress);
     return status;
 }

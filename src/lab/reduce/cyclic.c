@@ -52,6 +52,7 @@ static sn_cycle cycle_of(const sn_curve *c, int first, int peak, int last) {
 sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out) {
     SN_ASSERT(curve && out);
     *out = (sn_cycles){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a cyclic test"));
     double low = (double)INFINITY, high = -(double)INFINITY;
     for (int i = 0; i < curve->count; ++i) {
         low = fmin(low, curve->stretch[i]);

@@ -25,6 +25,7 @@ static sn_status rate_per_decade(const sn_curve *c, int peak, double *rate) {
 sn_status sn_reduce_relaxation(const sn_curve *curve, sn_relaxation_result *out) {
     SN_ASSERT(curve && out);
     *out = (sn_relaxation_result){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a relaxation test"));
     if (!curve->time)
         return sn_fail(SN_E_DATA, "%s: no time column: a relaxation test needs one", curve->name);
     int n = curve->count, start = 0, end = 0, peak = 0;

@@ -167,6 +167,7 @@ static sn_status slope_stress(const pull *p, sn_tensile *out) {
 sn_status sn_reduce_tensile(const sn_curve *curve, sn_tensile *out) {
     SN_ASSERT(curve && out);
     *out = (sn_tensile){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a tensile test"));
     int ultimate = 0;
     double low = (double)INFINITY, high = -(double)INFINITY;
     for (int i = 0; i < curve->count; ++i) {
