@@ -105,23 +105,37 @@ SN_API sn_status sn_lab_test(const sn_tissue *tissue, const sn_protocol *protoco
 
 //---- reduction -----------------------------------------------------------------------------------
 
+/// What was pulled: one axis with free sides; two axes of a sheet with a free thickness; one face
+/// slid along the first axis over the second (simple shear).
+typedef enum sn_curve_kind { SN_CURVE_UNIAXIAL, SN_CURVE_BIAXIAL, SN_CURVE_SHEAR } sn_curve_kind;
+
 /// A curve brought to time, stretch and nominal stress from whatever columns it has (force over
 /// area, extension over gauge_length, strain, true stress, …). Arrays owned.
 typedef struct sn_curve {
     char name[SN_TEXT_MAX];
+    sn_curve_kind kind;
     int count;
     double *time;                  ///< seconds; NULL where the curve has none
-    double *stretch;               ///< [1]
-    double *stress;                ///< nominal, Pa
+    double *stretch;               ///< [1], of the first axis; shear: the amount of shear [1]
+    double *stress;                ///< nominal, Pa, along the first axis; shear: the shear stress
+    double *stretch_2, *stress_2;  ///< of the second axis; NULL unless biaxial
     int discarded;                 ///< rows left out, why in `remarks`
     char remarks[SN_TEXT_MAX * 2]; ///< what was done to the data, in words
 } sn_curve;
 
+/// The columns say the kind: names with _1 and _2 are biaxial, shear_strain is a shear test. Shear
+/// stress is nominal, which in simple shear is the true one as well.
 /// Rows at the time of the row before are left out; a few rows that came late by a few places are
 /// put back (at most 1 % of the rows, by at most 5 places), and gaps are said.
-/// @return SN_OK, SN_E_DATA (a column or a quantity is missing, times go backwards, too few rows).
+/// @return SN_OK, SN_E_DATA (a column or a quantity is missing, columns of two kinds of test, times
+/// go backwards, too few rows).
 SN_API sn_status sn_curve_from_record(const sn_record *record, sn_curve *curve);
 SN_API void sn_curve_release(sn_curve *curve);
+/// "uniaxial", "biaxial" or "shear".
+SN_API const char *sn_curve_kind_name(sn_curve_kind kind);
+/// Refuses a curve of another kind; `what` wants it ("a tensile test"). @return SN_OK,
+/// SN_E_UNSUPPORTED.
+SN_API sn_status sn_curve_expect(const sn_curve *curve, sn_curve_kind kind, const char *what);
 
 /// How a tensile curve is reduced. Fill from sn_tensile_def_default().
 typedef struct sn_tensile_def {
@@ -277,6 +291,26 @@ SN_API sn_status sn_reduce_sweep(const sn_record *record, sn_dynamic *out);
 /// @return SN_OK, SN_E_DATA (no time, no part of 2 cycles), SN_E_MEMORY.
 SN_API sn_status sn_reduce_oscillation(const sn_curve *curve, sn_dynamic *out);
 SN_API void sn_dynamic_release(sn_dynamic *dynamic);
+/// One axis of a biaxial test. Moduli are slopes of the nominal stress over the stretch along the
+/// path of the test, so they hold for its ratio.
+typedef struct sn_biaxial_axis {
+    double peak_stretch, peak_stress; ///< in the row of the largest sum of stresses
+    double low_modulus;               ///< over the first fifth of the stretch of the axis, Pa
+    double high_modulus;              ///< over the last fifth, Pa
+} sn_biaxial_axis;
+typedef struct sn_biaxial_result {
+    sn_biaxial_axis axis[2];
+    double stretch_ratio; ///< (stretch_1 - 1)/(stretch_2 - 1) at the peak; NAN for 0 below
+    double stress_ratio;  ///< stress_1/stress_2 at the peak; NAN for 0 below
+    /// 2 (c2 - c1)/(c1 + c2), c the strain over the stress of an axis at the peak: 0 alike, above 0
+    /// where the first axis is the stiffer one
+    double anisotropy;
+    double energy; ///< work of both stresses up to the peak, J/m3
+    int peak;      ///< row
+} sn_biaxial_result;
+/// Properties of a biaxial loading, from the first row to the largest sum of both stresses.
+/// @return SN_OK, SN_E_UNSUPPORTED (another kind of curve), SN_E_DATA (no pull, fewer than 5 rows).
+SN_API sn_status sn_reduce_biaxial(const sn_curve *curve, sn_biaxial_result *out);
 
 //---- fitting -------------------------------------------------------------------------------------
 
@@ -294,7 +328,7 @@ typedef enum sn_fit_weighting {
 /// What to fit. Fill from sn_fit_def_default().
 typedef struct sn_fit_def {
     int curve_count;
-    const sn_curve *curve; ///< with time                          (curve_count), borrowed
+    const sn_curve *curve; ///< of any kinds                       (curve_count), borrowed
     const double *weight;  ///< Nullable: factor of a curve's squares (curve_count), borrowed
     const sn_law *law;
     const sn_memory_law *memory; ///< Nullable: none
@@ -327,18 +361,20 @@ typedef struct sn_fit_param {
     double ci95_bootstrap[2]; ///< percentiles of the refits; NAN without them
     bool fixed, at_bound;
     bool identifiable;
-    char reason[SN_TEXT_MAX]; ///< why not
+    char reason[SN_TEXT_MAX]; ///< why not; of a constant that no curve sees: what it was set to
 } sn_fit_param;
 
 typedef struct sn_fit_curve {
     int count;
-    double *predicted; ///< nominal stress, Pa, owned               (count)
-    double rmse;       ///< Pa
-    double peak;       ///< largest |measured stress|, Pa
+    double *predicted;   ///< nominal stress, Pa, owned               (count)
+    double *predicted_2; ///< along the second axis, owned; NULL unless biaxial (count)
+    double rmse;         ///< Pa, of both axes
+    double peak;         ///< largest |measured stress|, Pa, of both axes
     double r_squared;
-    int worst;            ///< row of the largest residual
-    int first, used;      ///< rows of the window, which all of the above but `predicted` speak of
-    double weight;        ///< factor of its squares
+    int worst;       ///< row of the largest residual
+    bool second;     ///< that residual is of the second axis
+    int first, used; ///< rows of the window, which all of the above but what is predicted speak of
+    double weight;   ///< factor of its squares
     double durbin_watson; ///< of its residuals in the order of the rows: 2 where they are white
 } sn_fit_curve;
 
@@ -372,7 +408,10 @@ typedef struct sn_fit_result {
 } sn_fit_result;
 
 /// Fits law and memory together, through the recorded stretch history of every curve. A bulk
-/// modulus is no parameter of a uniaxial fit: it is infinite unless fixed. Same input, same bits.
+/// modulus is no parameter of a fit: it is infinite unless fixed. Solids and membranes take biaxial
+/// and shear curves, residuals of both directions together; solids uniaxial ones as well. A shear
+/// constant of a Fung law that no curve sees is tied to the others as in an isotropic law. Fung
+/// laws stay convex. Same input, same bits.
 /// @return SN_OK, SN_E_DATA (no time, fewer points than parameters, constant stretch),
 /// SN_E_UNSUPPORTED (a law and a test that do not go together), SN_E_NAME (fixed name), SN_E_RANGE
 /// (fixed value, weight, number of refits), SN_E_DEFINITION (no curve, no law, too many

@@ -65,6 +65,7 @@ static const test_method methods[] = {
     {"creep", analyze_creep, NULL},
     {"relaxation", analyze_relaxation, NULL},
     {"dynamic", analyze_sinusoids, analyze_sweep},
+    {"biaxial", analyze_biaxial, NULL},
 };
 
 #define METHODS ((int)(sizeof methods / sizeof methods[0]))
@@ -193,7 +194,7 @@ static int run(const cli_command *command, int argc, char **argv) {
     analyze_options o = {0};
     const cli_option options[] = {
         {"test", CLI_TEXT, "METHOD", NULL, &o.test,
-         "tensile, cyclic, creep, relaxation or dynamic"},
+         "tensile, cyclic, creep, relaxation, dynamic or biaxial"},
         {"preload", CLI_TEXT, "QUANTITY", NULL, &o.preload,
          "tensile: the strain is 0 where the curve reaches this force or stress"},
         {"window", CLI_TEXT, "LO,HI", NULL, &o.window,
@@ -210,7 +211,7 @@ static int run(const cli_command *command, int argc, char **argv) {
         return cli_refuse("analyze: expected one curve, got %d", arguments.count);
     if (!o.test)
         return cli_refuse(
-            "analyze: --test is missing: tensile, cyclic, creep, relaxation or dynamic");
+            "analyze: --test is missing: tensile, cyclic, creep, relaxation, dynamic or biaxial");
     const char *names[METHODS];
     for (int k = 0; k < METHODS; k++) {
         names[k] = methods[k].name;
@@ -220,6 +221,7 @@ static int run(const cli_command *command, int argc, char **argv) {
 }
 
 const cli_command cli_analyze = {
-    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation|dynamic [--out DIR]",
-    "properties of a measured curve: moduli, yield, strength, hysteresis, creep, relaxation",
+    "analyze", "CURVE.csv --test tensile|cyclic|creep|relaxation|dynamic|biaxial [--out DIR]",
+    "properties of a measured curve: moduli, yield, strength, hysteresis, creep, relaxation, tan "
+    "delta",
     "sinew analyze data/cardiac-muscle/ramp-1s.csv --test relaxation", run};

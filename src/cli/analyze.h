@@ -43,5 +43,6 @@ sn_status analyze_tensile(const sn_curve *curve, analysis *a);
 sn_status analyze_cyclic(const sn_curve *curve, analysis *a);
 sn_status analyze_relaxation(const sn_curve *curve, analysis *a);
 sn_status analyze_creep(const sn_curve *curve, analysis *a);
+sn_status analyze_biaxial(const sn_curve *curve, analysis *a);
 sn_status analyze_sinusoids(const sn_curve *curve, analysis *a);
 sn_status analyze_sweep(const sn_record *record, analysis *a);

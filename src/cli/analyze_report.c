@@ -1,4 +1,4 @@
-// sinew analyze --test cyclic, relaxation, creep: findings, JSON and pages.
+// sinew analyze --test cyclic, relaxation, creep, biaxial: findings, JSON and pages.
 // SPDX-License-Identifier: Apache-2.0
 #include <math.h>
 #include <stdio.h>
@@ -258,5 +258,56 @@ sn_status analyze_creep(const sn_curve *curve, analysis *a) {
     PRESENT(a, "Creep", found);
     analyze_discard(a, 0, r.remarks);
     if (a->report) creep_plot(curve, a->report);
+    return SN_OK;
+}
+
+//---- biaxial -------------------------------------------------------------------------------------
+
+static json_t *biaxial_json(const sn_biaxial_result *r) {
+    static const char *const keys[2][4] = {
+        {"peak_stretch_1", "peak_stress_1_Pa", "low_modulus_1_Pa", "high_modulus_1_Pa"},
+        {"peak_stretch_2", "peak_stress_2_Pa", "low_modulus_2_Pa", "high_modulus_2_Pa"}};
+    json_t *json = json_object();
+    for (int k = 0; k < 2; k++) {
+        cli_put_number(json, keys[k][0], r->axis[k].peak_stretch);
+        cli_put_number(json, keys[k][1], r->axis[k].peak_stress);
+        cli_put_number(json, keys[k][2], r->axis[k].low_modulus);
+        cli_put_number(json, keys[k][3], r->axis[k].high_modulus);
+    }
+    cli_put_number(json, "stress_ratio", r->stress_ratio);
+    cli_put_number(json, "stretch_ratio", r->stretch_ratio);
+    cli_put_number(json, "anisotropy", r->anisotropy);
+    cli_put_number(json, "strain_energy_J_per_m3", r->energy);
+    return json;
+}
+
+sn_status analyze_biaxial(const sn_curve *curve, analysis *a) {
+    sn_biaxial_result r;
+    SN_TRY(sn_reduce_biaxial(curve, &r));
+    a->json = biaxial_json(&r);
+    char stretches[64], stresses[64], index[32], energy[64];
+    snprintf(stretches, sizeof stretches, "at stretches %.4g and %.4g", r.axis[0].peak_stretch,
+             r.axis[1].peak_stretch);
+    snprintf(stresses, sizeof stresses, "strains %s", cli_show(r.stretch_ratio, "1"));
+    snprintf(index, sizeof index, "%.3f", r.anisotropy);
+    snprintf(energy, sizeof energy, "%.4g J/m3", r.energy);
+    const finding found[] = {
+        {"peak stress, axis 1", cli_show(r.axis[0].peak_stress, "Pa"), stretches},
+        {"peak stress, axis 2", cli_show(r.axis[1].peak_stress, "Pa"), NULL},
+        {"modulus at low stretch, axis 1", cli_show(r.axis[0].low_modulus, "Pa"), "first fifth"},
+        {"modulus at low stretch, axis 2", cli_show(r.axis[1].low_modulus, "Pa"), NULL},
+        {"modulus at high stretch, axis 1", cli_show(r.axis[0].high_modulus, "Pa"), "last fifth"},
+        {"modulus at high stretch, axis 2", cli_show(r.axis[1].high_modulus, "Pa"), NULL},
+        {"ratio 1 to 2 at the peak, stresses", cli_show(r.stress_ratio, "1"), stresses},
+        {"anisotropy", index, "above 0: axis 1 is stiffer"},
+        {"strain energy at the peak", energy, NULL},
+    };
+    PRESENT(a, "Biaxial tension", found);
+    if (!a->report) return SN_OK;
+    const sn_line lines[] = {
+        {"axis 1", SN_LINE_POINTS, 0, curve->count, curve->stretch, curve->stress},
+        {"axis 2", SN_LINE_POINTS, 1, curve->count, curve->stretch_2, curve->stress_2}};
+    analyze_stress_plot(a->report, "Stress against stretch, both axes", "stretch [1]", false, 2,
+                        lines);
     return SN_OK;
 }

@@ -25,7 +25,10 @@ static sn_status read_data(const cli_arguments *arguments, fit_data *data) {
         sn_status status = sn_curve_from_record(record, &data->curve[k]);
         data->count = k + 1;
         data->weight[k] = 1;
-        if (status == SN_OK && !data->curve[k].time)
+        // biaxial and shear tables are published without; sn_fit() asks for it where memory needs
+        // it
+        const sn_curve *curve = &data->curve[k];
+        if (status == SN_OK && !curve->time && curve->kind == SN_CURVE_UNIAXIAL)
             status =
                 sn_fail(SN_E_DATA, "%s: no time column: a fit follows the recorded history", path);
         sn_record_destroy(record);
@@ -33,6 +36,18 @@ static sn_status read_data(const cli_arguments *arguments, fit_data *data) {
         SN_TRY(sn_file_sha256(path, data->sha256[k]));
     }
     return SN_OK;
+}
+
+// the parameter of a table that a name stands for: its own, or a3 of a list a; NULL: none
+static const sn_param *find_constant(const sn_param *params, int count, const char *name) {
+    int at = sn_param_find(params, count, name);
+    if (at >= 0) return &params[at];
+    for (int i = 0; i < count; i++) {
+        size_t stem = strlen(params[i].name);
+        if (params[i].length == 0 || strncmp(name, params[i].name, stem) != 0) continue;
+        if (name[stem] && name[stem + strspn(name + stem, "0123456789")] == 0) return &params[i];
+    }
+    return NULL;
 }
 
 // "NAME=VALUE" with the value in the unit of the law's or the memory's table
@@ -44,13 +59,9 @@ static sn_status read_fixed(const cli_list *list, sn_fit_def *def, char names[][
             return sn_fail(SN_E_SYNTAX, "--fix: found \"%s\", expected NAME=VALUE", list->item[k]);
         memcpy(names[k], list->item[k], length);
         names[k][length] = 0;
-        const sn_param *param = NULL;
-        int at = sn_param_find(def->law->params, def->law->param_count, names[k]);
-        if (at >= 0) param = &def->law->params[at];
-        if (!param && def->memory) {
-            at = sn_param_find(def->memory->params, def->memory->param_count, names[k]);
-            if (at >= 0) param = &def->memory->params[at];
-        }
+        const sn_param *param = find_constant(def->law->params, def->law->param_count, names[k]);
+        if (!param && def->memory)
+            param = find_constant(def->memory->params, def->memory->param_count, names[k]);
         if (!param)
             return sn_fail(SN_E_NAME,
                            "--fix: neither law \"%s\" nor the memory has a constant "
@@ -296,8 +307,10 @@ static int run_request(const fit_request *request, const cli_arguments *argument
                    : cli_fail(SN_E_MEMORY);
     if (outcome->fitted) sn_fit_release(outcome->fit);
     if (outcome->data) release_data(outcome->data);
-    for (int k = 0; outcome->held_out && k < SN_FIT_CURVES_MAX; k++)
+    for (int k = 0; outcome->held_out && k < SN_FIT_CURVES_MAX; k++) {
         sn_free(outcome->held_out[k].prediction.predicted);
+        sn_free(outcome->held_out[k].prediction.predicted_2);
+    }
     sn_free(outcome->held_out);
     sn_free(outcome->fit);
     sn_free(outcome->data);

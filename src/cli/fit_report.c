@@ -9,6 +9,36 @@
 // band and tolerance at which the spectrum's compression is reported: the span of the records
 #define COMPRESSION_TOLERANCE 1e-3
 
+static bool timed(const fit_outcome *o) {
+    for (int k = 0; k < o->data->count; k++)
+        if (!o->data->curve[k].time) return false;
+    return true;
+}
+
+// where a row stands: its time, or its number
+static const char *place_of(const sn_curve *curve, int row) {
+    static char text[4][32];
+    static int turn;
+    if (curve->time) return cli_show(curve->time[row], "s");
+    turn = (turn + 1) % 4;
+    snprintf(text[turn], sizeof text[turn], "row %d", row + 1);
+    return text[turn];
+}
+
+static double worst_measured(const sn_curve *m, const sn_fit_curve *c) {
+    return c->second ? m->stress_2[c->worst] : m->stress[c->worst];
+}
+
+static double worst_fitted(const sn_fit_curve *c) {
+    return c->second ? c->predicted_2[c->worst] : c->predicted[c->worst];
+}
+
+// Fung's laws have a condition to be convex, and the fit stays within it
+static json_t *convex_json(const sn_tissue *tissue) {
+    if (strncmp(tissue->law->name, "fung", 4) != 0) return json_null();
+    return json_boolean(sn_law_check(tissue->law, tissue->value, tissue->terms) == SN_OK);
+}
+
 static void time_span(const fit_outcome *o, double *shortest, double *longest) {
     *shortest = INFINITY;
     *longest = 0;
@@ -21,6 +51,7 @@ static void time_span(const fit_outcome *o, double *shortest, double *longest) {
 
 static bool compress(const fit_outcome *o, sn_exponentials *e) {
     double shortest, longest;
+    if (!timed(o)) return false;
     time_span(o, &shortest, &longest);
     return sn_memory_compress(&o->fit->tissue.memory, shortest, longest, COMPRESSION_TOLERANCE,
                               e) == SN_OK;
@@ -78,16 +109,21 @@ static json_t *curves_json(const fit_outcome *o) {
         cli_put_text(row, "file", o->data->path[k]);
         cli_put_text(row, "sha256", o->data->sha256[k]);
         cli_put_integer(row, "points", c->used);
+        cli_put_text(row, "kind", sn_curve_kind_name(m->kind));
         cli_put(row, "window",
-                cli_numbers(2, (double[]){m->time[c->first], m->time[c->first + c->used - 1]}));
+                m->time
+                    ? cli_numbers(2, (double[]){m->time[c->first], m->time[c->first + c->used - 1]})
+                    : json_null());
         cli_put_number(row, "weight", c->weight);
         cli_put_number(row, "rmse_Pa", c->rmse);
         cli_put_number(row, "rmse_over_peak", c->rmse / c->peak);
         cli_put_number(row, "r_squared", c->r_squared);
         cli_put_number(row, "durbin_watson", c->durbin_watson);
-        cli_put_number(worst, "time_s", m->time[c->worst]);
-        cli_put_number(worst, "measured_Pa", m->stress[c->worst]);
-        cli_put_number(worst, "fitted_Pa", c->predicted[c->worst]);
+        cli_put_integer(worst, "row", c->worst + 1);
+        cli_put_number(worst, "time_s", m->time ? m->time[c->worst] : (double)NAN);
+        if (m->kind == SN_CURVE_BIAXIAL) cli_put_integer(worst, "axis", c->second ? 2 : 1);
+        cli_put_number(worst, "measured_Pa", worst_measured(m, c));
+        cli_put_number(worst, "fitted_Pa", worst_fitted(c));
         cli_put(row, "worst", worst);
         json_array_append_new(data, row);
     }
@@ -123,7 +159,7 @@ json_t *fit_json(const fit_outcome *o) {
     cli_put_number(json, "aicc", f->aicc);
     cli_put(json, "correlation", correlation);
     put_verdicts(json, f);
-    cli_put(json, "convex", json_null()); // asked of Fung laws only
+    cli_put(json, "convex", convex_json(&f->tissue));
     cli_put_flag(json, "converged", f->converged);
     cli_put_text(json, "reason", f->reason);
     cli_put_integer(json, "points", f->points);
@@ -146,7 +182,7 @@ void fit_print(const fit_outcome *o) {
         const sn_fit_param *p = &f->param[k];
         printf("  %-10s %-14s", p->name, shown_value(p));
         if (p->fixed)
-            printf(" held\n");
+            printf(" held%s%s\n", *p->reason ? ": " : "", p->reason);
         else
             printf(" 95 %% interval %s to %s%s%s\n", cli_show(p->ci95[0], p->unit),
                    cli_show(p->ci95[1], p->unit),
@@ -156,9 +192,8 @@ void fit_print(const fit_outcome *o) {
         const sn_fit_curve *c = &f->curve[k];
         const sn_curve *m = &o->data->curve[k];
         printf("  %-24s rms %.2f %% of its peak; worst at %s: measured %s, fitted %s\n",
-               cli_basename(o->data->path[k]), 100 * c->rmse / c->peak,
-               cli_show(m->time[c->worst], "s"), cli_show(m->stress[c->worst], "Pa"),
-               cli_show(c->predicted[c->worst], "Pa"));
+               cli_basename(o->data->path[k]), 100 * c->rmse / c->peak, place_of(m, c->worst),
+               cli_show(worst_measured(m, c), "Pa"), cli_show(worst_fitted(c), "Pa"));
         if (o->has_held_out)
             printf("  %-24s predicted from the others: rms %.2f %% of its peak\n", "",
                    100 * o->held_out[k].prediction.rmse / o->held_out[k].prediction.peak);
@@ -185,7 +220,7 @@ static void parameter_table(sn_report *report, const sn_fit_result *f) {
         snprintf(text[k][1], sizeof text[k][1], "%s … %s", cli_show(p->ci95[0], p->unit),
                  cli_show(p->ci95[1], p->unit));
         snprintf(text[k][2], sizeof text[k][2], "%s",
-                 p->fixed          ? "not asked"
+                 p->fixed          ? (*p->reason ? p->reason : "not asked")
                  : p->identifiable ? "yes"
                                    : p->reason);
         cells[n++] = p->name, cells[n++] = text[k][0];
@@ -204,7 +239,7 @@ static void misses(sn_report *report, const fit_outcome *o) {
     double largest = 0;
     for (int k = 0; k < o->data->count; k++) {
         const sn_fit_curve *c = &o->fit->curve[k];
-        double residual = fabs(o->data->curve[k].stress[c->worst] - c->predicted[c->worst]);
+        double residual = fabs(worst_measured(&o->data->curve[k], c) - worst_fitted(c));
         if (residual > largest) largest = residual, worst = k;
     }
     const sn_fit_curve *c = &o->fit->curve[worst];
@@ -213,8 +248,8 @@ static void misses(sn_report *report, const fit_outcome *o) {
         report,
         "What the law misses: the largest residual is at %s of %s, where %s was measured "
         "and the fit has %s (%.1f %% of that curve's peak).",
-        cli_show(m->time[c->worst], "s"), cli_basename(o->data->path[worst]),
-        cli_show(m->stress[c->worst], "Pa"), cli_show(c->predicted[c->worst], "Pa"),
+        place_of(m, c->worst), cli_basename(o->data->path[worst]),
+        cli_show(worst_measured(m, c), "Pa"), cli_show(worst_fitted(c), "Pa"),
         100 * largest / c->peak);
     for (int k = 0; k < o->fit->param_count; k++)
         if (!o->fit->param[k].identifiable)
@@ -240,26 +275,41 @@ static void curve_table(sn_report *report, const fit_outcome *o) {
     sn_report_table(report, o->data->count + 1, columns, cells, "Errors, curve by curve.");
 }
 
-// measured points and the fitted line of every curve; x is time or stretch
-static void fit_plot(sn_report *report, const fit_outcome *o, bool over_time, bool predicted) {
-    sn_line line[2 * SN_FIT_CURVES_MAX];
-    char label[SN_FIT_CURVES_MAX][SN_TEXT_MAX];
+// Measured points and the fitted line of every curve of a kind. Over time: of all curves, those of
+// the second axes among them.
+static void fit_plot(sn_report *report, const fit_outcome *o, sn_curve_kind kind, bool over_time,
+                     bool predicted) {
+    sn_line line[4 * SN_FIT_CURVES_MAX];
+    char label[2 * SN_FIT_CURVES_MAX][SN_TEXT_MAX];
     int n = 0;
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *m = &o->data->curve[k];
+        const sn_fit_curve *c = predicted ? &o->held_out[k].prediction : &o->fit->curve[k];
         const double *x = over_time ? m->time : m->stretch;
-        const double *fitted =
-            predicted ? o->held_out[k].prediction.predicted : o->fit->curve[k].predicted;
-        snprintf(label[k], sizeof label[k], "%s", cli_basename(o->data->path[k]));
-        line[n++] = (sn_line){label[k], SN_POINTS, k % 8, m->count, x, m->stress};
-        line[n++] = (sn_line){NULL, SN_LINE, k % 8, m->count, x, fitted};
+        bool two = over_time && m->kind == SN_CURVE_BIAXIAL;
+        if (!over_time && m->kind != kind) continue;
+        snprintf(label[n / 2], sizeof *label, "%s%s", cli_basename(o->data->path[k]),
+                 two ? ", axis 1" : "");
+        line[n] = (sn_line){label[n / 2], SN_POINTS, n / 2 % 8, m->count, x, m->stress};
+        line[n + 1] = (sn_line){NULL, SN_LINE, n / 2 % 8, m->count, x, c->predicted};
+        n += 2;
+        if (!two) continue;
+        snprintf(label[n / 2], sizeof *label, "%s, axis 2", cli_basename(o->data->path[k]));
+        line[n] = (sn_line){label[n / 2], SN_POINTS, n / 2 % 8, m->count, x, m->stress_2};
+        line[n + 1] = (sn_line){NULL, SN_LINE, n / 2 % 8, m->count, x, c->predicted_2};
+        n += 2;
     }
+    if (n == 0) return;
+    bool shear = !over_time && kind == SN_CURVE_SHEAR;
     sn_report_plot(report,
                    &(sn_plot){.title = predicted   ? "Each curve predicted from the others"
                                        : over_time ? "Stress over time"
+                                       : shear     ? "Shear stress against shear strain"
                                                    : "Stress against stretch",
-                              .x_label = over_time ? "time [s]" : "stretch [1]",
-                              .y_label = "nominal stress [kPa]",
+                              .x_label = over_time ? "time [s]"
+                                         : shear   ? "shear strain [1]"
+                                                   : "stretch [1]",
+                              .y_label = shear ? "shear stress [kPa]" : "nominal stress [kPa]",
                               .y_scale = 1e-3,
                               .caption = "Points: measured. Lines: model, through the recorded "
                                          "history.",
@@ -268,25 +318,60 @@ static void fit_plot(sn_report *report, const fit_outcome *o, bool over_time, bo
                               .line = line});
 }
 
-static void residual_plot(sn_report *report, const fit_outcome *o) {
-    sn_line line[SN_FIT_CURVES_MAX];
-    double *residual = sn_alloc((size_t)o->fit->points, sizeof *residual);
-    if (!residual) return; // sn_report_write reports the shortage that follows
-    int used = 0;
+// both axes of every biaxial curve, a plot each
+static void biaxial_plots(sn_report *report, const fit_outcome *o, bool predicted) {
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *m = &o->data->curve[k];
-        line[k] = (sn_line){
-            cli_basename(o->data->path[k]),   SN_LINE_POINTS, k % 8, o->fit->curve[k].used,
-            m->time + o->fit->curve[k].first, residual + used};
-        for (int i = 0, at = o->fit->curve[k].first; i < o->fit->curve[k].used; i++, at++)
-            residual[used++] = m->stress[at] - o->fit->curve[k].predicted[at];
+        const sn_fit_curve *c = predicted ? &o->held_out[k].prediction : &o->fit->curve[k];
+        if (m->kind != SN_CURVE_BIAXIAL) continue;
+        char title[SN_TEXT_MAX + 32];
+        snprintf(title, sizeof title, "%s%s", cli_basename(o->data->path[k]),
+                 predicted ? ", predicted from the others" : "");
+        const sn_line line[] = {{"axis 1", SN_POINTS, 0, m->count, m->stretch, m->stress},
+                                {NULL, SN_LINE, 0, m->count, m->stretch, c->predicted},
+                                {"axis 2", SN_POINTS, 1, m->count, m->stretch_2, m->stress_2},
+                                {NULL, SN_LINE, 1, m->count, m->stretch_2, c->predicted_2}};
+        sn_report_plot(report, &(sn_plot){.title = title,
+                                          .x_label = "stretch of the axis [1]",
+                                          .y_label = "nominal stress [kPa]",
+                                          .y_scale = 1e-3,
+                                          .caption = "Points: measured. Lines: model.",
+                                          .line_count = 4,
+                                          .line = line});
+    }
+}
+
+// residuals of the fitted rows of every curve, of the second axis after the first
+static void residual_plot(sn_report *report, const fit_outcome *o) {
+    sn_line line[2 * SN_FIT_CURVES_MAX];
+    char label[2 * SN_FIT_CURVES_MAX][SN_TEXT_MAX];
+    bool over_time = timed(o);
+    size_t points = (size_t)o->fit->points;
+    double *residual = sn_alloc(2 * points, sizeof *residual), *at = residual + points;
+    if (!residual) return; // sn_report_write reports the shortage that follows
+    int used = 0, n = 0;
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_curve *m = &o->data->curve[k];
+        const sn_fit_curve *c = &o->fit->curve[k];
+        for (int axis = 0; axis < (m->kind == SN_CURVE_BIAXIAL ? 2 : 1); axis++) {
+            snprintf(label[n], sizeof *label, "%s%s", cli_basename(o->data->path[k]),
+                     axis ? ", axis 2" : "");
+            line[n] =
+                (sn_line){label[n], SN_LINE_POINTS, n % 8, c->used, at + used, residual + used};
+            n++;
+            for (int i = c->first; i < c->first + c->used; i++, used++) {
+                at[used] = over_time ? m->time[i] : i + 1;
+                residual[used] =
+                    axis ? m->stress_2[i] - c->predicted_2[i] : m->stress[i] - c->predicted[i];
+            }
+        }
     }
     sn_report_plot(report, &(sn_plot){.title = "Residuals",
-                                      .x_label = "time [s]",
+                                      .x_label = over_time ? "time [s]" : "row",
                                       .y_label = "measured - fitted [kPa]",
                                       .y_scale = 1e-3,
-                                      .log_x = true,
-                                      .line_count = o->data->count,
+                                      .log_x = over_time,
+                                      .line_count = n,
                                       .line = line});
     sn_free(residual);
 }
@@ -336,10 +421,17 @@ sn_status fit_report(const char *path, const fit_outcome *o) {
     parameter_table(report, f);
     misses(report, o);
     curve_table(report, o);
-    fit_plot(report, o, true, false);
-    fit_plot(report, o, false, false);
+    bool clock = timed(o); // a plot over time only where all curves have one
+    if (clock) fit_plot(report, o, SN_CURVE_UNIAXIAL, true, false);
+    fit_plot(report, o, SN_CURVE_UNIAXIAL, false, false);
+    biaxial_plots(report, o, false);
+    fit_plot(report, o, SN_CURVE_SHEAR, false, false);
     residual_plot(report, o);
-    if (o->has_held_out) fit_plot(report, o, true, true);
+    if (o->has_held_out) {
+        if (clock) fit_plot(report, o, SN_CURVE_UNIAXIAL, true, true);
+        if (!clock) fit_plot(report, o, SN_CURVE_UNIAXIAL, false, true);
+        biaxial_plots(report, o, true);
+    }
     memory_plot(report, o);
     sn_exponentials e;
     bool memory = f->tissue.memory.law->param_count > 0 && compress(o, &e);

@@ -13,6 +13,9 @@ static sn_status replay(const char *path, test_outcome *o) {
     sn_status status;
     SN_TRY_GOTO(status, sn_curve_read(path, &measured));
     SN_TRY_GOTO(status, sn_curve_from_record(measured, curve));
+    SN_TRY_GOTO(status, sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "--replay"));
+    if (!curve->time)
+        SN_TRY_GOTO(status, sn_fail(SN_E_DATA, "%s: no time column: --replay needs one", path));
     SN_TRY_GOTO(status, sn_fit_predict(o->tissue, curve, &o->prediction));
     SN_TRY_GOTO(status, sn_record_create(path, &o->record));
     SN_TRY_GOTO(status, sn_record_add_series(o->record, "time", "s"));

@@ -53,7 +53,9 @@ enum { KIND_COUNT = sizeof column_kinds / sizeof column_kinds[0] };
 static const struct {
     const char *key, *unit;
 } quantity_notes[] = {
-    {"area", "m2"}, {"gauge_length", "m"}, {"thickness", "m"}, {"width", "m"}, {"diameter", "m"},
+    {"area", "m2"},          {"area_1", "m2"},        {"area_2", "m2"},   {"gauge_length", "m"},
+    {"gauge_length_1", "m"}, {"gauge_length_2", "m"}, {"thickness", "m"}, {"width", "m"},
+    {"width_1", "m"},        {"width_2", "m"},        {"diameter", "m"},
 };
 enum { QUANTITY_COUNT = sizeof quantity_notes / sizeof quantity_notes[0] };
 

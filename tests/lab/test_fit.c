@@ -408,6 +408,7 @@ static void refusals_say_what_and_where(void **state) {
     CHECK_FAILS(sn_fit(&def, r), SN_E_DATA, "timeless: no time column");
     sn_fit_curve prediction;
     sn_tissue tissue = oracle_tissue("linear", (const double[]){1e4}, 1);
+    tissue.memory = oracle_memory("maxwell", 0, (const double[]){1.0}, 1);
     CHECK_FAILS(sn_fit_predict(&tissue, &timeless, &prediction), SN_E_DATA, "no time column");
     assert_null(prediction.predicted);
 

@@ -57,7 +57,7 @@ static void prepare(refits *r) {
     double widen = sqrt((double)p->used / (p->used - p->free_count));
     memcpy(r->model, p->model, (size_t)p->points * sizeof *r->model);
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
-        int rows = sn_problem_rows(p, k), first = at, used = 0;
+        int rows = sn_problem_rows(&p->def->curve[k]), first = at, used = 0;
         for (int i = at; i < at + rows; ++i) {
             r->noise[i] = widen * (p->measured[i] - p->model[i]);
             if (p->weight[i] == 0.0) continue;
@@ -71,7 +71,7 @@ static void prepare(refits *r) {
 static void draw(refits *r) {
     sn_problem *p = r->problem;
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
-        int rows = sn_problem_rows(p, k);
+        int rows = sn_problem_rows(&p->def->curve[k]);
         double s = 0.0;
         for (int i = 0; i < rows; ++i, ++at) {
             if (i % r->block[k] == 0) s = sign(r);

@@ -5,7 +5,7 @@
 //  1. It is a relaxation time that the test cannot show: under a third of the fastest ramp (the
 //     ramp hides it), under the shortest sampling interval of a ramp, or over the longest record;
 //     and its interval is at least moderately wide, see 5.
-//  2. It stands at a bound of the search.
+//  2. It stands at a bound of the search, or a Fung law at the limit of its convexity.
 //  3. Its 95 % interval is open: it reaches a bound of the search.
 //  4. Its interval is wide: ends more than a factor of 10 apart where the scale is the logarithm,
 //     or more than the value apart where it is not.
@@ -14,12 +14,14 @@
 //  6. Its interval is not narrow (ends 1.25 times apart, or a quarter of the value) and it is tied
 //     by a correlation beyond 0.98 to a constant whose interval is open: the bounds of the search
 //     cut its interval, not the data.
+// Where all curves have one loading ratio, that takes the place of the reason of 2 to 6.
 // A correlation alone is no reason: B and C of an exponential law are tied in every test, and
 // narrow intervals of both say that the data tell them apart.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "lab/fit/fung.h"
 #include "lab/fit/statistics.h"
 
 static const double hidden = 1.0 / 3.0, wide_factor = 10.0, wide_part = 1.0;
@@ -138,10 +140,71 @@ static void judge(const sn_problem *problem, const sn_spread *spread, int j, sn_
     } else if (p->at_bound) {
         snprintf(p->reason, sizeof p->reason, "at the %s bound of the search, %.4g%s",
                  low ? "lower" : "upper", low ? c->low : c->high, unit_text(c));
+    } else if (!c->in_memory &&
+               sn_fung_at_limit(problem->tissue.law, problem->tissue.value, c->index)) {
+        p->at_bound = true;
+        snprintf(p->reason, sizeof p->reason,
+                 "at the limit of convexity: without it the data would go beyond");
     } else if (!because_of_interval(c, p)) {
         because_of_tie(problem, spread, j, p);
     }
     p->identifiable = p->reason[0] == 0;
+}
+
+// The ratio E22/E11 where all curves together have only one, else NAN. Rows of under a third of the
+// largest strain do not count: their ratio is noise.
+static double one_ratio(const sn_problem *problem) {
+    static const double spread = 0.05; // radians
+    double low = (double)INFINITY, high = -(double)INFINITY, size = 0.0;
+    for (int pass = 0; pass < 2; ++pass)
+        for (int k = 0; k < problem->def->curve_count; ++k) {
+            const sn_curve *c = &problem->def->curve[k];
+            if (c->kind != SN_CURVE_BIAXIAL) return (double)NAN;
+            for (int i = 0; i < c->count; ++i) {
+                double x = 0.5 * (c->stretch[i] * c->stretch[i] - 1.0);
+                double y = 0.5 * (c->stretch_2[i] * c->stretch_2[i] - 1.0), r = hypot(x, y);
+                if (pass == 0) size = fmax(size, r);
+                if (pass == 0 || r < size / 3.0) continue;
+                low = fmin(low, atan2(y, x));
+                high = fmax(high, atan2(y, x));
+            }
+        }
+    return high - low < spread ? tan(0.5 * (low + high)) : (double)NAN;
+}
+
+static const char *name_at(const sn_problem *problem, int index) {
+    for (int k = 0; k < problem->count; ++k)
+        if (!problem->constant[k].in_memory && problem->constant[k].index == index)
+            return problem->constant[k].name;
+    return "";
+}
+
+// Says of the constants that were found wanting that all curves load alike, if they do, and what
+// of a planar Fung form is known then: S11 = c X (a1 + r a4) E11, S22 = c X (a2 + a4/r) E22.
+static void because_of_ratio(const sn_problem *problem, sn_fit_result *result) {
+    double r = one_ratio(problem);
+    if (!isfinite(r)) return;
+    const sn_fung_form *form;
+    int forms = sn_fung_forms(problem->tissue.law, &form);
+    for (int j = 0; j < problem->free_count; ++j) {
+        const sn_fit_constant *c = &problem->constant[problem->free[j]];
+        sn_fit_param *p = &result->param[problem->free[j]];
+        char known[SN_TEXT_MAX];
+        if (p->identifiable || c->in_memory) continue;
+        snprintf(known, sizeof known, "the data do not tell apart what makes up %.150s",
+                 result->weakest);
+        for (int k = 0; k < forms && form[k].normal[2] < 0; ++k) {
+            if (c->index != form[k].normal[0] && c->index != form[k].normal[1] &&
+                c->index != form[k].cross[0])
+                continue;
+            const char *cross = name_at(problem, form[k].cross[0]);
+            snprintf(known, sizeof known, "only %.20s %+.3g %.20s and %.20s %+.3g %.20s are known",
+                     name_at(problem, form[k].normal[0]), r, cross,
+                     name_at(problem, form[k].normal[1]), 1.0 / r, cross);
+        }
+        snprintf(p->reason, sizeof p->reason, "one loading ratio: E22/E11 is %.3g throughout, %s",
+                 r, known);
+    }
 }
 
 static void describe_constants(const sn_problem *problem, sn_fit_result *result) {
@@ -152,6 +215,9 @@ static void describe_constants(const sn_problem *problem, sn_fit_result *result)
         *p = (sn_fit_param){.fixed = !c->free, .identifiable = true, .standard_error = (double)NAN};
         p->ci95[0] = p->ci95[1] = p->ci95_bootstrap[0] = p->ci95_bootstrap[1] = (double)NAN;
         p->value = (c->in_memory ? problem->tissue.memory.value : problem->tissue.value)[c->index];
+        if (c->tied)
+            snprintf(p->reason, sizeof p->reason,
+                     "no curve sees it: set to what an isotropic law would have");
         snprintf(p->name, sizeof p->name, "%s", c->name);
         snprintf(p->unit, sizeof p->unit, "%s", c->param->unit);
     }
@@ -210,6 +276,7 @@ sn_status sn_describe(sn_problem *problem, sn_found *best, bool last, sn_fit_res
         result->identifiable = result->identifiable && p->identifiable;
     }
     because_of_open_partners(problem, &spread, result);
+    because_of_ratio(problem, result);
     sn_describe_determined(problem, &spread, result);
     return SN_OK;
 }

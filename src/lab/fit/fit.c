@@ -18,26 +18,54 @@ sn_fit_def sn_fit_def_default(void) {
                         .to = (double)INFINITY};
 }
 
-// fills all but `predicted` from it, over the rows of the window
+// fills all but what is predicted from it, over the rows of the window
 static void judge_curve(const sn_curve *curve, sn_fit_curve *out) {
-    double mean = 0.0, sse = 0.0, sst = 0.0, largest = -1.0, last = 0.0, steps = 0.0;
-    int end = out->first + out->used;
-    for (int i = out->first; i < end; ++i) mean += curve->stress[i] / out->used;
-    for (int i = out->first; i < end; ++i) {
-        double residual = out->predicted[i] - curve->stress[i];
-        sse += residual * residual;
-        sst += (curve->stress[i] - mean) * (curve->stress[i] - mean);
-        if (i > out->first) steps += (residual - last) * (residual - last);
-        last = residual;
-        out->peak = fmax(out->peak, fabs(curve->stress[i]));
-        if (fabs(residual) > largest) {
-            largest = fabs(residual);
-            out->worst = i;
+    double mean = 0.0, sse = 0.0, sst = 0.0, largest = -1.0, steps = 0.0;
+    int end = out->first + out->used, axes = curve->kind == SN_CURVE_BIAXIAL ? 2 : 1;
+    double n = (double)axes * out->used;
+    for (int axis = 0; axis < axes; ++axis) {
+        const double *measured = axis ? curve->stress_2 : curve->stress;
+        for (int i = out->first; i < end; ++i) mean += measured[i] / n;
+    }
+    for (int axis = 0; axis < axes; ++axis) {
+        const double *measured = axis ? curve->stress_2 : curve->stress;
+        const double *predicted = axis ? out->predicted_2 : out->predicted;
+        double last = 0.0;
+        for (int i = out->first; i < end; ++i) {
+            double residual = predicted[i] - measured[i];
+            sse += residual * residual;
+            sst += (measured[i] - mean) * (measured[i] - mean);
+            if (i > out->first) steps += (residual - last) * (residual - last);
+            last = residual;
+            out->peak = fmax(out->peak, fabs(measured[i]));
+            if (fabs(residual) > largest) {
+                largest = fabs(residual);
+                out->worst = i;
+                out->second = axis == 1;
+            }
         }
     }
-    out->rmse = sqrt(sse / out->used);
+    out->rmse = sqrt(sse / n);
     out->r_squared = sst > 0.0 ? 1.0 - sse / sst : (double)NAN;
     out->durbin_watson = sse > 0.0 ? steps / sse : (double)NAN;
+}
+
+// a copy of n numbers into *to
+static sn_status copy(int n, const double *from, double **to) {
+    *to = sn_alloc((size_t)n, sizeof **to);
+    if (!*to) return SN_E_MEMORY;
+    memcpy(*to, from, (size_t)n * sizeof **to);
+    return SN_OK;
+}
+
+// predicted stresses of both axes from one array
+static sn_status take_prediction(const sn_curve *curve, const double *stress, sn_fit_curve *out) {
+    out->count = curve->count;
+    SN_TRY(copy(curve->count, stress, &out->predicted));
+    if (curve->kind == SN_CURVE_BIAXIAL)
+        SN_TRY(copy(curve->count, stress + curve->count, &out->predicted_2));
+    judge_curve(curve, out);
+    return SN_OK;
 }
 
 static void judge_all(const sn_problem *p, const sn_found *best, sn_fit_result *r) {
@@ -65,18 +93,14 @@ static sn_status fill_curves(const sn_problem *p, sn_fit_result *r) {
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
         const sn_curve *curve = &p->def->curve[k];
         sn_fit_curve *out = &r->curve[r->curve_count++];
-        out->count = curve->count;
-        out->predicted = sn_alloc((size_t)curve->count, sizeof *out->predicted);
-        if (!out->predicted) return SN_E_MEMORY;
-        memcpy(out->predicted, p->model + at, (size_t)curve->count * sizeof *out->predicted);
         for (int i = curve->count - 1; i >= 0; --i) {
             if (p->weight[at + i] == 0.0) continue;
             out->first = i;
             out->used++;
             out->weight = p->weight[at + i] * p->weight[at + i];
         }
-        judge_curve(curve, out);
-        at += sn_problem_rows(p, k);
+        SN_TRY(take_prediction(curve, p->model + at, out));
+        at += sn_problem_rows(curve);
     }
     return SN_OK;
 }
@@ -120,12 +144,14 @@ static sn_status search_and_describe(sn_problem *p, const sn_tissue *near, sn_fi
     bool moved = true, settled;
     int restarts = 0;
     SN_TRY(search(p, near, &best, &settled));
+    sn_problem_settle(p, best.x);
     while (moved) {
         if (p->def->progress) p->def->progress(p->def->progress_context, 0.75, "intervals");
         SN_TRY(sn_describe(p, &best, restarts == RESTARTS, r, &moved));
         if (!moved) break;
         restarts++;
         SN_TRY(sn_search_local(p, NULL, 1e-12, &best));
+        sn_problem_settle(p, best.x);
     }
     SN_TRY(set_model(p, &best));
     r->tissue = p->tissue;
@@ -205,31 +231,59 @@ sn_status sn_fit_trial_of(const sn_fit_def *def, sn_tissue *tissue, sn_fit_trial
 
 void sn_fit_release(sn_fit_result *result) {
     if (!result) return;
-    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) sn_free(result->curve[k].predicted);
+    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) {
+        sn_free(result->curve[k].predicted);
+        sn_free(result->curve[k].predicted_2);
+    }
     memset(result->curve, 0, sizeof result->curve);
     result->curve_count = 0;
 }
 
+static sn_status predict_uniaxial(const sn_tissue *tissue, const sn_curve *curve, double *stress) {
+    sn_history *history;
+    SN_TRY(sn_history_create(1, curve->count, curve->time, curve->stretch, &history));
+    sn_status status = sn_lab_uniaxial(tissue, history, curve->count, curve->time, stress);
+    sn_history_destroy(history);
+    return status;
+}
+
+static sn_status predict_in_plane(const sn_tissue *tissue, const sn_curve *curve, double *stress) {
+    bool memory = tissue->memory.law->param_count > 0;
+    sn_exponentials e;
+    sn_in_plane *path;
+    SN_TRY(sn_in_plane_check(tissue, curve));
+    SN_TRY(sn_memory_expand(&tissue->memory, &e));
+    SN_TRY(sn_in_plane_create(curve, curve->time, tissue->law, memory, &path));
+    sn_status status = sn_in_plane_stress(path, tissue, &e, stress);
+    sn_in_plane_destroy(path);
+    return status;
+}
+
 sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve, sn_fit_curve *prediction) {
     SN_ASSERT(tissue && curve && prediction);
-    *prediction = (sn_fit_curve){.count = curve->count, .used = curve->count, .weight = 1.0};
-    if (!curve->time)
-        return sn_fail(SN_E_DATA, "%s: no time column: a prediction needs one", curve->name);
+    *prediction = (sn_fit_curve){.used = curve->count, .weight = 1.0};
+    sn_curve timed = *curve; // without a memory time does not matter: row numbers stand for it
+    double *rows = NULL, *stress = NULL;
     SN_TRY(sn_tissue_check(tissue));
-    sn_history *history = NULL;
-    sn_status status;
-    SN_TRY_GOTO(status, sn_history_create(1, curve->count, curve->time, curve->stretch, &history));
-    status = SN_E_MEMORY;
-    prediction->predicted = sn_alloc((size_t)curve->count, sizeof *prediction->predicted);
-    if (!prediction->predicted) goto fail;
-    SN_TRY_GOTO(status,
-                sn_lab_uniaxial(tissue, history, curve->count, curve->time, prediction->predicted));
-    judge_curve(curve, prediction);
+    if (!curve->time && tissue->memory.law->param_count > 0)
+        return sn_fail(SN_E_DATA, "%s: no time column: a prediction with memory %s needs one",
+                       curve->name, tissue->memory.law->name);
+    sn_status status = SN_E_MEMORY;
+    rows = sn_alloc((size_t)curve->count, sizeof *rows);
+    stress = sn_alloc((size_t)sn_problem_rows(curve), sizeof *stress);
+    if (!rows || !stress) goto fail;
+    for (int i = 0; i < curve->count; ++i) rows[i] = i;
+    if (!timed.time) timed.time = rows;
+    SN_TRY_GOTO(status, (curve->kind == SN_CURVE_UNIAXIAL ? predict_uniaxial : predict_in_plane)(
+                            tissue, &timed, stress));
+    SN_TRY_GOTO(status, take_prediction(curve, stress, prediction));
 fail:
     if (status != SN_OK) {
         sn_free(prediction->predicted);
-        prediction->predicted = NULL;
+        sn_free(prediction->predicted_2);
+        prediction->predicted = prediction->predicted_2 = NULL;
     }
-    sn_history_destroy(history);
+    sn_free(rows);
+    sn_free(stress);
     return status;
 }

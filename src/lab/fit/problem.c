@@ -6,10 +6,14 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "lab/fit/fung.h"
+
 // Steps of the model: level 1 is good to 1e-6 of the peak for the curves people record, and the
 // model is a smooth function of the constants because the steps do not depend on them.
 enum { LEVEL = 1 };
 static const double exponent_max = 40.0; // largest exponent that a bound of a pure number allows
+static const double form_max = 20.0;     // the same of one term of Fung's quadratic form
+static const double beyond = 10.0;       // how residuals grow outside convexity
 
 double sn_sum_squares(int n, const double *x) {
     double sum = 0.0;
@@ -26,21 +30,59 @@ double sn_problem_natural(const sn_fit_constant *constant, double scaled) {
     return fmin(fmax(value, constant->low), constant->high); // exp(log(x)) may leave by a bit
 }
 
+int sn_problem_rows(const sn_curve *curve) {
+    return curve->kind == SN_CURVE_BIAXIAL ? 2 * curve->count : curve->count;
+}
+
 //---- constants and bounds ------------------------------------------------------------------------
+
+// The constant's term of a Fung form by the strains it multiplies: E_i E_j of a normal or cross
+// constant, 2 E12^2 of a shear. 0: it is in no form.
+static double form_strain(const sn_problem *p, int index, bool *positive) {
+    const sn_fung_form *form;
+    int count = sn_fung_forms(p->tissue.law, &form);
+    for (int k = 0; k < count; ++k)
+        for (int i = 0; i < 3; ++i) {
+            double first = fmax(p->green[i], 1e-3), next = fmax(p->green[(i + 1) % 3], 1e-3);
+            *positive = form[k].cross[i] != index;
+            if (form[k].normal[i] == index) return first * first;
+            if (form[k].cross[i] == index) return first * next;
+            if (form[k].shear[i] == index) return 2.0 * fmax(p->shear * p->shear, 1e-6);
+        }
+    return 0.0;
+}
+
+// Bounds of a constant of a Fung form: no term beyond an exponent, no linear term beyond twice the
+// largest stress; normal constants and shears positive.
+static void set_form_bounds(const sn_problem *p, double strain, bool positive, sn_fit_constant *c) {
+    double high = c->stress ? 2.0 * p->peak / sqrt(strain) : form_max / strain;
+    c->high = fmin(c->param->max, high);
+    c->low = fmax(c->param->min, positive ? 1e-6 * c->high : -c->high);
+}
 
 // Bounds: the table's, narrowed to what the data can speak of. Stresses by the secant modulus,
 // times by sampling and record, pure numbers by the exponent they make at the largest strain.
 static void set_bounds(const sn_problem *p, sn_fit_constant *c) {
     const sn_param *t = c->param;
+    bool positive = false;
+    double strain = c->in_memory ? 0.0 : form_strain(p, c->index, &positive);
+    if (strain > 0.0) {
+        set_form_bounds(p, strain, positive, c);
+        return;
+    }
     double low = t->min, high = t->max, modulus = p->peak / p->strain;
     if (c->stress) {
         low = fmax(low, t->log_scale || t->min >= 0.0 ? 1e-6 * modulus : -1e3 * modulus);
-        high = fmin(high, 1e3 * modulus);
+        // from 0 on a straight scale, as fibres have it: no room for a far end to drown the near
+        // one
+        high = fmin(high, (t->min == 0.0 && !t->log_scale ? 20.0 : 1e3) * modulus);
     } else if (c->time) {
         low = fmax(low, p->sampling / 100.0);
         high = fmin(high, 100.0 * p->record);
-    } else {
-        double limit = exponent_max / p->strain;
+    } else if (p->tissue.law->kind != SN_LAW_MEMBRANE || c->in_memory) {
+        // the cubic terms of a membrane keep the bounds of their table
+        // pulled two ways, laws stiffen by invariants, which are of second order
+        double limit = exponent_max / (p->biaxial ? p->strain * p->strain : p->strain);
         low = fmax(low, t->log_scale ? 1e-4 : -limit);
         high = fmin(high, limit);
     }
@@ -55,6 +97,16 @@ static int fixed_index(const sn_fit_def *def, const char *name) {
     for (int i = 0; i < def->fixed_count; ++i)
         if (strcmp(def->fixed_name[i], name) == 0) return i;
     return -1;
+}
+
+// a shear constant of a plane in which no curve shears
+static bool is_unseen(const sn_problem *p, const sn_fit_constant *c) {
+    if (c->in_memory) return false;
+    int plane = sn_fung_shear_plane(p->tissue.law, c->index);
+    if (plane < 0) return false;
+    for (int k = 0; k < p->def->curve_count && plane == 0; ++k)
+        if (p->def->curve[k].kind == SN_CURVE_SHEAR) return false;
+    return true;
 }
 
 static sn_status add_constant(sn_problem *p, const sn_param *param, bool in_memory, int index,
@@ -80,8 +132,12 @@ static sn_status add_constant(sn_problem *p, const sn_param *param, bool in_memo
     int fixed = fixed_index(p->def, c->name);
     if (fixed >= 0) {
         *value = p->def->fixed_value[fixed];
+        if (!in_memory) p->held[index] = true;
+    } else if (is_unseen(p, c)) {
+        c->tied = true;
+        *value = 1.0; // until the others are set
     } else if (param->infinity) {
-        *value = (double)INFINITY; // a uniaxial test does not see the bulk modulus of a soft tissue
+        *value = (double)INFINITY; // no test here sees the bulk modulus of a soft tissue
     } else {
         set_bounds(p, c);
         if (!(c->low < c->high))
@@ -173,32 +229,62 @@ static sn_status set_constants(sn_problem *p) {
 
 //---- data ----------------------------------------------------------------------------------------
 
+static double apart(const sn_curve *c, int i, int k) {
+    double d = fabs(c->stretch[i] - c->stretch[k]);
+    return c->stretch_2 ? hypot(d, c->stretch_2[i] - c->stretch_2[k]) : d;
+}
+
 // first row at which the stretch is within 1 % of its range of the largest distance from the start
 static int ramp_end(const sn_curve *curve) {
     double reach = 0.0;
-    for (int i = 0; i < curve->count; ++i)
-        reach = fmax(reach, fabs(curve->stretch[i] - curve->stretch[0]));
+    for (int i = 0; i < curve->count; ++i) reach = fmax(reach, apart(curve, i, 0));
     int end = 0;
-    while (fabs(curve->stretch[end] - curve->stretch[0]) < 0.99 * reach) ++end;
+    while (apart(curve, end, 0) < 0.99 * reach) ++end;
     return end;
+}
+
+static double green(double stretch) {
+    return 0.5 * (stretch - 1.0) * (stretch + 1.0);
+}
+
+// the largest strains and stresses
+static void take_extremes(sn_problem *p, const sn_curve *c) {
+    double E[3];
+    for (int i = 0; i < c->count; ++i) {
+        double x = c->stretch[i];
+        p->peak = fmax(p->peak, fabs(c->stress[i]));
+        if (c->stress_2) p->peak = fmax(p->peak, fabs(c->stress_2[i]));
+        if (c->kind == SN_CURVE_SHEAR) {
+            p->strain = fmax(p->strain, fabs(x));
+            p->shear = fmax(p->shear, 0.5 * fabs(x));
+            p->green[1] = fmax(p->green[1], 0.5 * x * x);
+            continue;
+        }
+        double y = c->stretch_2 ? c->stretch_2[i] : 1.0 / sqrt(x);
+        E[0] = green(x);
+        E[1] = green(y);
+        E[2] = green(1.0 / (x * y));
+        for (int j = 0; j < 3; ++j) p->green[j] = fmax(p->green[j], fabs(E[j]));
+        p->strain = fmax(p->strain, fabs(x - 1.0));
+        if (c->stretch_2) p->biaxial = true;
+        if (c->stretch_2) p->strain = fmax(p->strain, fabs(y - 1.0));
+    }
 }
 
 static sn_status add_curve(sn_problem *p, int k, const double *time) {
     const sn_curve *curve = &p->def->curve[k];
-    double low = (double)INFINITY, high = -(double)INFINITY;
-    for (int i = 0; i < curve->count; ++i) {
-        p->peak = fmax(p->peak, fabs(curve->stress[i]));
-        p->strain = fmax(p->strain, fabs(curve->stretch[i] - 1.0));
-        low = fmin(low, curve->stretch[i]);
-        high = fmax(high, curve->stretch[i]);
-    }
-    if (!(high > low))
-        return sn_fail(SN_E_DATA, "%s: the stretch is %g in every row: a fit needs a pull",
-                       curve->name, high);
+    take_extremes(p, curve);
     int end = ramp_end(curve);
+    if (end == 0)
+        return sn_fail(SN_E_DATA, "%s: the %s is %g in every row: a fit needs a pull", curve->name,
+                       curve->kind == SN_CURVE_SHEAR ? "shear" : "stretch", curve->stretch[0]);
     for (int i = 1; i <= end; ++i) p->sampling = fmin(p->sampling, time[i] - time[i - 1]);
     p->ramp = fmin(p->ramp, time[end] - time[0]);
     p->record = fmax(p->record, fmin(time[curve->count - 1], p->def->to) - time[0]);
+    if (curve->kind != SN_CURVE_UNIAXIAL) {
+        bool memory = p->def->memory && p->def->memory->param_count > 0;
+        return sn_in_plane_create(curve, time, p->def->law, memory, &p->plane[k]);
+    }
     sn_history *history;
     SN_TRY(sn_history_create(1, curve->count, time, curve->stretch, &history));
     sn_status status = sn_path_create(history, curve->count, time, &p->path[k]);
@@ -237,7 +323,7 @@ static sn_status set_data(sn_problem *p) {
     if (!(p->peak > 0.0))
         return sn_fail(SN_E_DATA, "%s: the stress is 0 in every row: nothing to fit",
                        def->curve[0].name);
-    for (int k = 0; k < def->curve_count; ++k) p->points += def->curve[k].count;
+    for (int k = 0; k < def->curve_count; ++k) p->points += sn_problem_rows(&def->curve[k]);
     p->measured = sn_alloc(3 * (size_t)p->points, sizeof *p->measured);
     if (!p->measured) return SN_E_MEMORY;
     p->weight = p->measured + p->points;
@@ -247,9 +333,11 @@ static sn_status set_data(sn_problem *p) {
         if (!(weight > 0.0) || !isfinite(weight))
             return sn_fail(SN_E_RANGE, "%s: weight %g: expected a number above 0",
                            def->curve[k].name, weight);
-        for (int i = 0; i < def->curve[k].count; ++i, ++at) {
-            bool in = sn_problem_in_window(def, &def->curve[k], i);
-            p->measured[at] = def->curve[k].stress[i];
+        const sn_curve *curve = &def->curve[k];
+        for (int i = 0; i < sn_problem_rows(curve); ++i, ++at) {
+            int row = i % curve->count;
+            bool in = sn_problem_in_window(def, curve, row);
+            p->measured[at] = i < curve->count ? curve->stress[row] : curve->stress_2[row];
             p->weight[at] = in ? sqrt(weight) : 0.0;
             p->norm += in ? weight * p->measured[at] * p->measured[at] : 0.0;
             p->used += in;
@@ -265,23 +353,43 @@ static sn_status check_definition(const sn_fit_def *def) {
     if (def->fixed_count < 0 || def->fixed_count > SN_FIT_PARAMS_MAX)
         return sn_fail(SN_E_DEFINITION, "fit: %d fixed constants: expected 0 to %d",
                        def->fixed_count, SN_FIT_PARAMS_MAX);
-    if (def->law->kind == SN_LAW_MEMBRANE)
-        return sn_fail(SN_E_UNSUPPORTED,
-                       "fit: law %s is a membrane and the curves are uniaxial: expected a uniaxial "
-                       "or a solid law",
-                       def->law->name);
-    for (int k = 0; k < def->law->param_count; ++k)
-        if (def->law->params[k].length > 1)
-            return sn_fail(
-                SN_E_UNSUPPORTED,
-                "fit: law %s has the list %s of %d constants for three directions, which "
-                "pulls along one axis cannot tell apart: expected a law such as "
-                "exponential, demiray or guccione",
-                def->law->name, def->law->params[k].name, def->law->params[k].length);
+    bool biaxial = false;
+    for (int k = 0; k < def->curve_count; ++k) {
+        biaxial = biaxial || def->curve[k].kind == SN_CURVE_BIAXIAL;
+        if (def->law->kind == SN_LAW_MEMBRANE && def->curve[k].kind == SN_CURVE_UNIAXIAL)
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "fit: law %s is a membrane and the curve %s is uniaxial: expected a "
+                           "uniaxial or a solid law, or biaxial and shear curves",
+                           def->law->name, def->curve[k].name);
+    }
     for (int k = 0; k < def->curve_count; ++k)
         if (def->curve[k].count < 3)
             return sn_fail(SN_E_DATA, "%s: %d rows: expected at least 3", def->curve[k].name,
                            def->curve[k].count);
+    for (int k = 0; k < def->law->param_count && !biaxial; ++k)
+        if (def->law->params[k].length > 1)
+            return sn_fail(
+                SN_E_UNSUPPORTED,
+                "fit: law %s has the list %s of %d constants for three directions, which no "
+                "uniaxial or shear curve tells apart: add biaxial curves, or use another law",
+                def->law->name, def->law->params[k].name, def->law->params[k].length);
+    return SN_OK;
+}
+
+// law and memory against the kind and the start of every curve
+static sn_status check_curves(const sn_problem *p) {
+    for (int k = 0; k < p->def->curve_count; ++k) {
+        const sn_curve *c = &p->def->curve[k];
+        bool shear = c->kind == SN_CURVE_SHEAR;
+        if (c->kind != SN_CURVE_UNIAXIAL) SN_TRY(sn_in_plane_check(&p->tissue, c));
+        double rest = shear ? 0.0 : 1.0;
+        bool second = c->stretch_2 && c->stretch_2[0] != 1.0;
+        if (p->tissue.memory.law->impulse && (c->stretch[0] != rest || second))
+            return sn_fail(SN_E_DATA,
+                           "%s: the curve starts at %s %g: memory %s needs a start at %g", c->name,
+                           shear ? "shear" : "stretch", second ? c->stretch_2[0] : c->stretch[0],
+                           p->tissue.memory.law->name, rest);
+    }
     return SN_OK;
 }
 
@@ -300,13 +408,7 @@ sn_status sn_problem_create(const sn_fit_def *def, sn_problem **problem) {
                          p->free_count);
         goto fail;
     }
-    for (int k = 0; k < def->curve_count; ++k)
-        if (p->tissue.memory.law->impulse && def->curve[k].stretch[0] != 1.0) {
-            status = sn_fail(
-                SN_E_DATA, "%s: the curve starts at stretch %g: memory %s needs a start at 1",
-                def->curve[k].name, def->curve[k].stretch[0], p->tissue.memory.law->name);
-            goto fail;
-        }
+    SN_TRY_GOTO(status, check_curves(p));
     *problem = p;
     return SN_OK;
 fail:
@@ -316,7 +418,10 @@ fail:
 
 void sn_problem_destroy(sn_problem *problem) {
     if (!problem) return;
-    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) sn_path_destroy(problem->path[k]);
+    for (int k = 0; k < SN_FIT_CURVES_MAX; ++k) {
+        sn_path_destroy(problem->path[k]);
+        sn_in_plane_destroy(problem->plane[k]);
+    }
     sn_free(problem->measured);
     sn_free(problem);
 }
@@ -329,18 +434,36 @@ void sn_problem_set(sn_problem *problem, const double *x) {
         double *values = c->in_memory ? problem->tissue.memory.value : problem->tissue.value;
         values[c->index] = sn_problem_natural(c, x[j]);
     }
+    problem->convexity = sn_fung_convex(problem->tissue.law, problem->held, problem->tissue.value);
+    for (int k = 0; k < problem->count; ++k) {
+        const sn_fit_constant *c = &problem->constant[k];
+        if (c->tied)
+            sn_fung_tie(problem->tissue.law, c->index, c->param->max, problem->tissue.value);
+    }
+}
+
+void sn_problem_settle(sn_problem *problem, double *x) {
+    sn_problem_set(problem, x);
+    for (int j = 0; j < problem->free_count; ++j) {
+        const sn_fit_constant *c = &problem->constant[problem->free[j]];
+        const double *values = c->in_memory ? problem->tissue.memory.value : problem->tissue.value;
+        x[j] = sn_problem_scaled(c, values[c->index]);
+    }
 }
 
 // model stresses of the tissue as it stands
 static sn_status model_stress(sn_problem *p) {
     sn_exponentials e;
-    sn_pull pull;
+    sn_pull pull = SN_PULL_UNIAXIAL;
     SN_TRY(sn_law_check(p->tissue.law, p->tissue.value, p->tissue.terms));
     SN_TRY(sn_memory_expand(&p->tissue.memory, &e));
-    SN_TRY(sn_pull_choose(&p->tissue, &pull));
+    if (p->tissue.law->kind != SN_LAW_MEMBRANE) SN_TRY(sn_pull_choose(&p->tissue, &pull));
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
-        SN_TRY(sn_path_stress(p->path[k], &p->tissue, pull, &e, LEVEL, p->model + at));
-        at += p->def->curve[k].count;
+        if (p->plane[k])
+            SN_TRY(sn_in_plane_stress(p->plane[k], &p->tissue, &e, p->model + at));
+        else
+            SN_TRY(sn_path_stress(p->path[k], &p->tissue, pull, &e, LEVEL, p->model + at));
+        at += sn_problem_rows(&p->def->curve[k]);
     }
     return SN_OK;
 }
@@ -349,8 +472,9 @@ bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual
     problem->evaluations++;
     sn_problem_set(problem, x);
     bool good = model_stress(problem) == SN_OK;
+    double away = 1.0 + beyond * (1.0 - problem->convexity);
     for (int i = 0; i < problem->points && good; ++i) {
-        residual[i] = problem->weight[i] * (problem->model[i] - problem->measured[i]);
+        residual[i] = away * problem->weight[i] * (problem->model[i] - problem->measured[i]);
         good = fabs(residual[i]) < 1e150; // squares must not overflow; false for NaN
     }
     if (good) return true;
@@ -361,6 +485,7 @@ bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual
 
 double sn_problem_scaled_sum(sn_problem *problem, double *x, double *residual) {
     int n = problem->points;
+    sn_problem_settle(problem, x);
     if (!sn_problem_residuals(problem, x, residual) || !problem->scalable)
         return sn_sum_squares(n, residual);
     double cross = 0.0, square = 0.0;

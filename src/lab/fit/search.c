@@ -16,7 +16,7 @@
 #include <cminpack.h>
 #include <nlopt.h>
 
-enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 400 };
+enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 400, MANY = 6 };
 // rows on which the search for a start is done, in all and at least of every curve
 enum { START_ROWS = 200, START_LEAST = 30 };
 static const double apart = 0.1;       // of the unit cube, largest difference of a coordinate
@@ -152,8 +152,8 @@ sn_status sn_search_local(sn_problem *problem, const bool *hold, double enough, 
         return SN_OK;
     }
     found->info = lmdif(local_residuals, &l, (int)m, (int)n, y, residual, enough, 1e-9, 0.0,
-                        LOCAL_CALLS, epsfcn, diag, 1, 1.0, 0, &calls, jacobian, (int)m, pivot, qtf,
-                        wa[0], wa[1], wa[2], wa4);
+                        l.count > MANY ? 3 * LOCAL_CALLS : LOCAL_CALLS, epsfcn, diag, 1, 1.0, 0,
+                        &calls, jacobian, (int)m, pivot, qtf, wa[0], wa[1], wa[2], wa4);
     local_residuals(&l, (int)m, (int)n, y, residual, 1);
     memcpy(found->x, l.x, sizeof found->x);
     found->sum = sn_sum_squares(problem->points, residual);
@@ -184,6 +184,29 @@ static sn_status finish(cube *c, sn_found *best) {
     return SN_OK;
 }
 
+// One more start for laws of two directions, of which some have a dozen constants: those that may
+// be 0 (cross, cubic and linear terms, fibres) are held there first, and then let go. The end is no
+// worse than that of the simpler law.
+static sn_status refine_simple(cube *c, sn_found *best) {
+    sn_problem *p = c->problem;
+    bool hold[SN_FIT_PARAMS_MAX] = {false}, in_plane = false;
+    int held = 0;
+    for (int k = 0; k < p->def->curve_count; ++k) in_plane = in_plane || p->plane[k];
+    sn_found found = *best;
+    for (int j = 0; j < p->free_count && in_plane; ++j) {
+        const sn_fit_constant *k = &p->constant[p->free[j]];
+        bool may = k->low < 0.0 && k->high > 0.0;
+        hold[j] = !k->in_memory && !k->param->log_scale && (may || k->stress);
+        if (hold[j]) found.x[j] = fmax(0.0, k->low);
+        held += hold[j];
+    }
+    if (held == 0 || held == p->free_count) return SN_OK;
+    SN_TRY(sn_search_local(p, hold, 1e-6, &found));
+    SN_TRY(sn_search_local(p, NULL, 1e-6, &found));
+    if (found.sum < best->sum) *best = found;
+    return SN_OK;
+}
+
 static sn_status refine(cube *c, sn_found *best) {
     const sn_fit_def *def = c->problem->def;
     best->sum = (double)INFINITY;
@@ -197,7 +220,7 @@ static sn_status refine(cube *c, sn_found *best) {
             def->progress(def->progress_context, 0.3 + 0.4 * (i + 1) / c->kept_count,
                           "local search");
     }
-    return SN_OK;
+    return refine_simple(c, best);
 }
 
 //---- long records --------------------------------------------------------------------------------
@@ -210,12 +233,20 @@ static sn_status thin_curve(const sn_curve *curve, int step, sn_curve *out) {
     out->time = curve->time ? sn_alloc(most, sizeof *out->time) : NULL;
     out->stretch = sn_alloc(most, sizeof *out->stretch);
     out->stress = sn_alloc(most, sizeof *out->stress);
-    if ((curve->time && !out->time) || !out->stretch || !out->stress) return SN_E_MEMORY;
+    out->stretch_2 = curve->stretch_2 ? sn_alloc(most, sizeof *out->stretch_2) : NULL;
+    out->stress_2 = curve->stress_2 ? sn_alloc(most, sizeof *out->stress_2) : NULL;
+    if ((curve->time && !out->time) || !out->stretch || !out->stress ||
+        (curve->stretch_2 && !(out->stretch_2 && out->stress_2)))
+        return SN_E_MEMORY;
     for (int i = 0; i < curve->count; ++i) {
         if (i % step != 0 && i != curve->count - 1) continue;
         if (curve->time) out->time[out->count] = curve->time[i];
         out->stretch[out->count] = curve->stretch[i];
         out->stress[out->count] = curve->stress[i];
+        if (curve->stretch_2) {
+            out->stretch_2[out->count] = curve->stretch_2[i];
+            out->stress_2[out->count] = curve->stress_2[i];
+        }
         out->count++;
     }
     return SN_OK;

@@ -14,15 +14,14 @@ bool sn_problem_in_window(const sn_fit_def *def, const sn_curve *curve, int row)
     return !curve->time || (curve->time[row] >= def->from && curve->time[row] <= def->to);
 }
 
-int sn_problem_rows(const sn_problem *problem, int k) {
-    return problem->def->curve[k].count;
-}
-
 static double peak_of(const sn_fit_def *def, int k) {
     const sn_curve *curve = &def->curve[k];
     double peak = 0.0;
-    for (int i = 0; i < curve->count; ++i)
-        if (sn_problem_in_window(def, curve, i)) peak = fmax(peak, fabs(curve->stress[i]));
+    for (int i = 0; i < curve->count; ++i) {
+        if (!sn_problem_in_window(def, curve, i)) continue;
+        peak = fmax(peak, fabs(curve->stress[i]));
+        if (curve->kind == SN_CURVE_BIAXIAL) peak = fmax(peak, fabs(curve->stress_2[i]));
+    }
     return peak;
 }
 
@@ -46,7 +45,7 @@ static void variances(const sn_problem *p, double *variance) {
     double floor = pow(quietest * p->peak, 2.0);
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
         double sum = 0.0;
-        int used = 0, rows = sn_problem_rows(p, k);
+        int used = 0, rows = sn_problem_rows(&p->def->curve[k]);
         for (int i = at; i < at + rows; ++i) {
             if (p->weight[i] == 0.0) continue;
             sum += pow(p->model[i] - p->measured[i], 2.0);
@@ -65,7 +64,7 @@ static double reweigh(sn_problem *p, const double *variance, double largest) {
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
         double own = p->def->weight ? p->def->weight[k] : 1.0;
         double root = sqrt(own * largest / variance[k]);
-        for (int end = at + sn_problem_rows(p, k); at < end; ++at) {
+        for (int end = at + sn_problem_rows(&p->def->curve[k]); at < end; ++at) {
             if (p->weight[at] == 0.0) continue;
             change = fmax(change, fabs(pow(root / p->weight[at], 2.0) - 1.0));
             p->weight[at] = root;

@@ -17,7 +17,7 @@ static const double gap = 10.0; // times the intervals before and after
 
 // the columns of the curve that there are
 static int columns_of(sn_curve *c, double **column) {
-    double *all[] = {c->time, c->stretch, c->stress};
+    double *all[] = {c->time, c->stretch, c->stress, c->stretch_2, c->stress_2};
     int count = 0;
     for (int k = 0; k < (int)(sizeof all / sizeof *all); ++k)
         if (all[k]) column[count++] = all[k];

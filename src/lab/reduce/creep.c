@@ -135,6 +135,7 @@ static double creep_rate(const sn_curve *c, const hold *h) {
 sn_status sn_reduce_creep(const sn_curve *curve, sn_creep_result *out) {
     SN_ASSERT(curve && out);
     *out = (sn_creep_result){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a creep test"));
     if (!curve->time)
         return sn_fail(SN_E_DATA, "%s: no time column: a creep test needs one", curve->name);
     hold h = {0};

@@ -1,6 +1,7 @@
 // A record of any kind brought to time, stretch and nominal stress.
 // SPDX-License-Identifier: Apache-2.0
-// Source: equations (15) and (17): Green strain (L^2 - 1)/2, T = L S; incompressible: T = sigma/L.
+// Source: equations (15) and (17): Green strain (L^2 - 1)/2, T = L S; incompressible: T = sigma/L,
+// along each axis of a biaxial test as well, where the face of an axis shrinks by its stretch.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -67,77 +68,191 @@ enum {
 
 static void remark(sn_curve *curve, const char *text) {
     size_t used = strlen(curve->remarks);
+    if (strstr(curve->remarks, text)) return; // of the other axis
     snprintf(curve->remarks + used, sizeof curve->remarks - used, "%s%s", used ? "; " : "", text);
 }
 
+// A note for an axis ("", "_1" or "_2"): its own, or one without suffix for a square specimen.
+static double axis_note(const sn_record *record, const char *key, const char *suffix, bool *found) {
+    char own[SN_NAME_MAX];
+    snprintf(own, sizeof own, "%s%s", key, suffix);
+    const sn_note *note = sn_record_note(record, own);
+    if (!note) note = sn_record_note(record, key);
+    *found = *found || note;
+    return note ? note->value : (double)NAN;
+}
+
+// the value of the note of a source; an area may be a thickness times a width
+static sn_status need_note(const sn_record *record, const source *from, const char *column,
+                           const char *suffix, double *note) {
+    bool found = false, area = strcmp(from->note, "area") == 0;
+    *note = axis_note(record, from->note, suffix, &found);
+    if (area && !found)
+        *note =
+            axis_note(record, "thickness", "", &found) * axis_note(record, "width", suffix, &found);
+    if (isfinite(*note) && *note > 0.0) return SN_OK;
+    return sn_fail(
+        SN_E_DATA, "%s: column %s needs a remark \"# %s%s: ...\"%s above 0 with its unit, %s",
+        record->name, column, from->note, suffix, area ? ", or a thickness and a width," : "",
+        found ? "found one without a usable value" : "found none");
+}
+
+// a quantity of one axis: the columns it can come from, what was found
+typedef struct wanted {
+    const source *sources;
+    int count;
+    const char *what, *names;
+    const source *chosen;
+    const double *column;
+    double note;
+} wanted;
+
 // the first source that the record has, with its column and the value of its note
-static sn_status choose(const sn_record *record, const source *sources, int count, const char *what,
-                        const char *wanted, const source **chosen, const double **column,
-                        double *note) {
-    for (int i = 0; i < count; ++i) {
-        *column = sn_record_values(record, sources[i].column);
-        if (!*column) continue;
-        *chosen = &sources[i];
-        if (!sources[i].note) return SN_OK;
-        const sn_note *found = sn_record_note(record, sources[i].note);
-        *note = found ? found->value : (double)NAN;
-        if (isfinite(*note) && *note > 0.0) return SN_OK;
-        return sn_fail(SN_E_DATA,
-                       "%s: column %s needs a remark \"# %s: ...\" above 0 with its unit, %s",
-                       record->name, sources[i].column, sources[i].note,
-                       found ? "found one without a usable value" : "found none");
+static sn_status choose(const sn_record *record, const char *suffix, wanted *w) {
+    char name[SN_NAME_MAX];
+    for (int i = 0; i < w->count; ++i) {
+        snprintf(name, sizeof name, "%s%s", w->sources[i].column, suffix);
+        w->column = sn_record_values(record, name);
+        if (!w->column) continue;
+        w->chosen = &w->sources[i];
+        return w->chosen->note ? need_note(record, w->chosen, name, suffix, &w->note) : SN_OK;
     }
-    return sn_fail(SN_E_DATA, "%s: no column for %s: expected %s", record->name, what, wanted);
+    return sn_fail(SN_E_DATA, "%s: no column for %s%s: expected %s%s", record->name, w->what,
+                   !*suffix               ? ""
+                   : *(suffix + 1) == '1' ? " of the first axis"
+                                          : " of the second axis",
+                   w->names, *suffix ? ", each with its _1 or _2" : "");
+}
+
+// a column of either table with this suffix, or NULL
+static const char *any_column(const sn_record *record, const char *suffix) {
+    static _Thread_local char name[SN_NAME_MAX];
+    for (int i = 0; i < STRETCHES + STRESSES; ++i) {
+        const source *s = i < STRETCHES ? &stretch_sources[i] : &stress_sources[i - STRETCHES];
+        snprintf(name, sizeof name, "%s%s", s->column, suffix);
+        if (sn_record_find(record, name) >= 0) return name;
+    }
+    return NULL;
+}
+
+// the kind of test that the columns belong to
+static sn_status find_kind(const sn_record *record, sn_curve_kind *kind) {
+    char one[SN_NAME_MAX] = "", two[SN_NAME_MAX] = "";
+    const char *axis = any_column(record, "_1");
+    if (!axis) axis = any_column(record, "_2");
+    if (axis) snprintf(two, sizeof two, "%s", axis);
+    axis = any_column(record, "");
+    if (axis) snprintf(one, sizeof one, "%s", axis);
+    bool shear =
+        sn_record_find(record, "shear_strain") >= 0 || sn_record_find(record, "shear_stress") >= 0;
+    *kind = shear ? SN_CURVE_SHEAR : *two ? SN_CURVE_BIAXIAL : SN_CURVE_UNIAXIAL;
+    if ((*one != 0) + (*two != 0) + shear < 2) return SN_OK;
+    return sn_fail(SN_E_DATA,
+                   "%s: columns of two kinds of test, %s and %s: expected one of uniaxial "
+                   "(stretch, stress, ...), biaxial (stretch_1, stretch_2, ...) or shear "
+                   "(shear_strain, shear_stress): leave the others out",
+                   record->name, *one ? one : two, shear ? "shear_strain" : two);
 }
 
 static sn_status allocate(sn_curve *curve, int rows, bool timed) {
     size_t n = (size_t)rows;
+    bool two = curve->kind == SN_CURVE_BIAXIAL;
     curve->stretch = sn_alloc(n, sizeof *curve->stretch);
     curve->stress = sn_alloc(n, sizeof *curve->stress);
+    if (two) curve->stretch_2 = sn_alloc(n, sizeof *curve->stretch_2);
+    if (two) curve->stress_2 = sn_alloc(n, sizeof *curve->stress_2);
     if (timed) curve->time = sn_alloc(n, sizeof *curve->time);
-    return curve->stretch && curve->stress && (!timed || curve->time) ? SN_OK : SN_E_MEMORY;
+    return curve->stretch && curve->stress && (!timed || curve->time) &&
+                   (!two || (curve->stretch_2 && curve->stress_2))
+               ? SN_OK
+               : SN_E_MEMORY;
+}
+
+// what a row holds, second axis included
+typedef struct row {
+    double time, stretch[2], stress[2];
+} row;
+
+static sn_status check_row(const sn_record *record, const sn_curve *curve, int i, const row *r) {
+    int axes = curve->kind == SN_CURVE_BIAXIAL ? 2 : 1;
+    bool shear = curve->kind == SN_CURVE_SHEAR;
+    for (int a = 0; a < axes; ++a) {
+        if (!isfinite(r->stretch[a]) || (!shear && !(r->stretch[a] > 0.0)))
+            return sn_fail(SN_E_DATA, "%s: row %d: %s is %g, expected a number%s", record->name,
+                           i + 1, shear ? "shear strain" : "stretch", r->stretch[a],
+                           shear ? "" : " above 0");
+        if (!isfinite(r->stress[a]))
+            return sn_fail(SN_E_DATA, "%s: row %d: stress is %g, expected a number", record->name,
+                           i + 1, r->stress[a]);
+    }
+    if (curve->time && !isfinite(r->time))
+        return sn_fail(SN_E_DATA, "%s: row %d: time is %g, expected a number", record->name, i + 1,
+                       r->time);
+    return SN_OK;
 }
 
 // One row into the curve.
-static sn_status take_row(const sn_record *record, int row, double time, double stretch,
-                          double stress, sn_curve *curve) {
+static sn_status take_row(const sn_record *record, int i, const row *r, sn_curve *curve) {
     int n = curve->count;
-    if (!isfinite(stretch) || !(stretch > 0.0))
-        return sn_fail(SN_E_DATA, "%s: row %d: stretch is %g, expected a number above 0",
-                       record->name, row + 1, stretch);
-    if (!isfinite(stress))
-        return sn_fail(SN_E_DATA, "%s: row %d: stress is %g, expected a number", record->name,
-                       row + 1, stress);
-    if (curve->time) {
-        if (!isfinite(time))
-            return sn_fail(SN_E_DATA, "%s: row %d: time is %g, expected a number", record->name,
-                           row + 1, time);
-        curve->time[n] = time;
+    SN_TRY(check_row(record, curve, i, r));
+    if (curve->time) curve->time[n] = r->time;
+    curve->stretch[n] = r->stretch[0];
+    curve->stress[n] = r->stress[0];
+    if (curve->kind == SN_CURVE_BIAXIAL) {
+        curve->stretch_2[n] = r->stretch[1];
+        curve->stress_2[n] = r->stress[1];
     }
-    curve->stretch[n] = stretch;
-    curve->stress[n] = stress;
     curve->count++;
     return SN_OK;
 }
 
 static sn_status fill(const sn_record *record, sn_curve *curve) {
-    const source *length = NULL, *load = NULL;
-    const double *x, *f, *time = sn_record_values(record, "time");
-    double length_note = (double)NAN, load_note = (double)NAN;
-    SN_TRY(choose(record, stretch_sources, STRETCHES, "the stretch",
-                  "stretch, strain, green_strain, or length or extension with a gauge length",
-                  &length, &x, &length_note));
-    SN_TRY(choose(record, stress_sources, STRESSES, "the stress",
-                  "stress (nominal), true_stress, pk2_stress, or force with an area", &load, &f,
-                  &load_note));
+    static const source shear_strain = {"shear_strain", NULL, as_it_is, NULL};
+    static const source shear_stress = {"shear_stress", NULL, as_it_is, NULL};
+    static const char *const suffixes[] = {"_1", "_2"};
+    SN_TRY(find_kind(record, &curve->kind));
+    const double *time = sn_record_values(record, "time");
+    bool two = curve->kind == SN_CURVE_BIAXIAL, shear = curve->kind == SN_CURVE_SHEAR;
+    wanted length[2], load[2];
+    for (int a = 0; a < (two ? 2 : 1); ++a) {
+        const char *suffix = two ? suffixes[a] : "";
+        length[a] = (wanted){stretch_sources,
+                             STRETCHES,
+                             "the stretch",
+                             "stretch, strain, green_strain, or length or extension with a gauge "
+                             "length",
+                             NULL,
+                             NULL,
+                             (double)NAN};
+        load[a] = (wanted){
+            stress_sources, STRESSES,
+            "the stress",   "stress (nominal), true_stress, pk2_stress, or force with an area",
+            NULL,           NULL,
+            (double)NAN};
+        if (shear) {
+            length[a] = (wanted){&shear_strain, 1, "the shear", "shear_strain", NULL, NULL, 0.0};
+            load[a] = (wanted){&shear_stress, 1, "the shear", "shear_stress", NULL, NULL, 0.0};
+        }
+        SN_TRY(choose(record, suffix, &length[a]));
+        SN_TRY(choose(record, suffix, &load[a]));
+        if (length[a].chosen->remark) remark(curve, length[a].chosen->remark);
+        if (load[a].chosen->remark) remark(curve, load[a].chosen->remark);
+    }
     SN_TRY(allocate(curve, record->rows, time != NULL));
     for (int i = 0; i < record->rows; ++i) {
-        double stretch = length->convert(x[i], length_note, (double)NAN);
-        double stress = load->convert(f[i], load_note, stretch);
-        SN_TRY(take_row(record, i, time ? time[i] : (double)NAN, stretch, stress, curve));
+        row r = {.time = time ? time[i] : (double)NAN};
+        for (int a = 0; a < (two ? 2 : 1); ++a) {
+            const wanted *l = &length[a], *f = &load[a];
+            r.stretch[a] = l->chosen->convert(l->column[i], l->note, (double)NAN);
+            r.stress[a] = f->chosen->convert(f->column[i], f->note, r.stretch[a]);
+        }
+        SN_TRY(take_row(record, i, &r, curve));
     }
-    if (length->remark) remark(curve, length->remark);
-    if (load->remark) remark(curve, load->remark);
+    return SN_OK;
+}
+
+static sn_status finish(const sn_record *record, sn_curve *curve) {
+    SN_TRY(fill(record, curve));
     SN_TRY(sn_curve_clean(curve));
     if (curve->count < 3)
         return sn_fail(SN_E_DATA, "%s: %d usable rows: expected at least 3", record->name,
@@ -149,7 +264,7 @@ sn_status sn_curve_from_record(const sn_record *record, sn_curve *curve) {
     SN_ASSERT(record && curve);
     *curve = (sn_curve){0};
     snprintf(curve->name, sizeof curve->name, "%s", record->name);
-    sn_status status = fill(record, curve);
+    sn_status status = finish(record, curve);
     if (status != SN_OK) sn_curve_release(curve);
     return status;
 }
@@ -159,5 +274,19 @@ void sn_curve_release(sn_curve *curve) {
     sn_free(curve->time);
     sn_free(curve->stretch);
     sn_free(curve->stress);
+    sn_free(curve->stretch_2);
+    sn_free(curve->stress_2);
     *curve = (sn_curve){0};
+}
+
+const char *sn_curve_kind_name(sn_curve_kind kind) {
+    static const char *const names[] = {"uniaxial", "biaxial", "shear"};
+    SN_ASSERT(kind <= SN_CURVE_SHEAR);
+    return names[kind];
+}
+
+sn_status sn_curve_expect(const sn_curve *curve, sn_curve_kind kind, const char *what) {
+    if (curve->kind == kind) return SN_OK;
+    return sn_fail(SN_E_UNSUPPORTED, "%s: a %s curve: %s needs a %s one", curve->name,
+                   sn_curve_kind_name(curve->kind), what, sn_curve_kind_name(kind));
 }

@@ -90,6 +90,7 @@ sn_status sn_reduce_cyclic(const sn_curve *curve, sn_cycles *out) {
     SN_ASSERT(curve && out);
     *out = (sn_cycles){0};
     double low = (double)INFINITY, high = -(double)INFINITY, noise;
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a cyclic test"));
     for (int i = 0; i < curve->count; ++i) {
         low = fmin(low, curve->stretch[i]);
         high = fmax(high, curve->stretch[i]);

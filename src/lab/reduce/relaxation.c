@@ -215,6 +215,7 @@ static void say_rest(const sn_curve *c, sn_relaxation_result *out) {
 sn_status sn_reduce_relaxation(const sn_curve *curve, sn_relaxation_result *out) {
     SN_ASSERT(curve && out);
     *out = (sn_relaxation_result){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a relaxation test"));
     if (!curve->time)
         return sn_fail(SN_E_DATA, "%s: no time column: a relaxation test needs one", curve->name);
     double low = curve->stretch[0], high = low;

@@ -220,6 +220,7 @@ sn_status sn_reduce_tensile(const sn_curve *curve, const sn_tensile_def *def, sn
     SN_ASSERT(curve && out);
     sn_tensile_def standard = sn_tensile_def_default();
     *out = (sn_tensile){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a tensile test"));
     sn_pull pull;
     sn_status status = sn_pull_create(curve, def ? def : &standard, &pull, out);
     if (status == SN_OK) status = reduce(curve, def ? def : &standard, &pull, out);
