@@ -17,6 +17,13 @@ check: ## installs what is missing, then all tests: style, includes, warnings, u
 verify: all ## long verification runs
 	@scripts/verify.sh build/sinew
 
+fuzz: ## fuzzes every reader for SECONDS each (100: ten minutes in all)
+	@scripts/install-packages.sh fuzz
+	@scripts/fuzz.sh $(SECONDS)
+
+manual: all ## rewrites the manual's printed tables
+	@scripts/manual.sh build/sinew
+
 install: all ## headers, libraries, command, sinew.pc, CMake package (PREFIX, DESTDIR)
 	@cmake --install build $(if $(PREFIX),--prefix $(PREFIX))
 
@@ -26,5 +33,5 @@ clean:
 help:
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
 
-.PHONY: all demo check verify install clean help
+.PHONY: all demo check verify fuzz manual install clean help
 $(shell mkdir -p build)
