@@ -20,6 +20,13 @@ verify: all ## long verification runs
 figures: all ## figures of the manual, from the command's own output
 	@scripts/figures.sh build/sinew
 
+fuzz: ## fuzzes every reader for SECONDS each (100: ten minutes in all)
+	@scripts/install-packages.sh fuzz
+	@scripts/fuzz.sh $(SECONDS)
+
+manual: all ## rewrites the manual's printed tables
+	@scripts/manual.sh build/sinew
+
 install: all ## headers, libraries, command, sinew.pc, CMake package (PREFIX, DESTDIR)
 	@cmake --install build $(if $(PREFIX),--prefix $(PREFIX))
 
@@ -29,5 +36,5 @@ clean:
 help:
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
 
-.PHONY: all demo check verify figures install clean help
+.PHONY: all demo check verify figures fuzz manual install clean help
 $(shell mkdir -p build)

@@ -1,13 +1,13 @@
 #!/bin/sh
-# Installs the Debian packages that are missing for "demo" or "check" (which includes demo), and
-# says which and why. Uses apt-get as root or through sudo.
+# Installs the Debian packages that are missing for "demo", "check" or "fuzz" (which include demo),
+# and says which and why. Uses apt-get as root or through sudo.
 set -eu
 cd "$(dirname "$0")"
 what=${1:-demo}
 missing=""
 while read -r package for why; do
     case "$package" in \#* | "") continue ;; esac
-    [ "$for" = demo ] || [ "$what" = check ] || continue
+    [ "$for" = demo ] || [ "$for" = "$what" ] || continue
     if ! dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q "ok installed"; then
         [ -n "$missing" ] || echo "Installing with apt-get:"
         printf '  %-22s %s\n' "$package" "$why"

@@ -54,6 +54,34 @@ SN_API sn_status sn_mesh_read_gmsh(const char *path, double scale, sn_mesh **mes
 SN_API sn_status sn_tool_surface_read_stl(const char *path, double scale,
                                           sn_tool_surface **surface);
 
+//---- tissues of other programs -------------------------------------------------------------------
+
+/// How a file of a program without units is to be taken, and what a conversion had to give up.
+typedef struct sn_foreign {
+    double stress;        ///< SI value of the file's unit of stress, e.g. 1e3 for kPa
+    double time;          ///< SI value of its unit of time
+    double length;        ///< SI value of its unit of length, for densities; NAN: none is written
+    const char *material; ///< Nullable: name of the material to read where there are several
+    double from, to;      ///< band in which a spectrum is compressed, seconds
+    int terms;            ///< out: exponentials in the file
+    double max_error;     ///< out: largest error over the band that their number costs, of G(0) = 1
+    char remarks[512];    ///< out: what differs, in words; empty where nothing does
+} sn_foreign;
+/// Units missing (NAN), band 1 ms to 1000 s.
+SN_API sn_foreign sn_foreign_default(void);
+/// Writes a tissue as a FEBio 4 file with its material section. Laws: neo-hookean, mooney-rivlin,
+/// ogden, demiray, veronda-westmann, fung, guccione, hgo, of finite bulk modulus.
+/// @return SN_OK, SN_E_DEFINITION (units missing), SN_E_UNSUPPORTED, SN_E_RANGE, SN_E_FILE,
+/// SN_E_MEMORY.
+SN_API sn_status sn_tissue_write_febio(const char *path, const sn_tissue *tissue, sn_foreign *how);
+/// Reads what sn_tissue_write_febio() writes and its like; guccione comes back as fung.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_KEY, SN_E_NAME, SN_E_RANGE, SN_E_UNSUPPORTED, …
+SN_API sn_status sn_tissue_read_febio(const char *path, sn_tissue *tissue, sn_foreign *how);
+/// Writes a tissue as an Abaqus material. Laws: neo-hookean, mooney-rivlin, ogden, fung, guccione,
+/// hgo; a fluid (no long-term stress) is refused.
+SN_API sn_status sn_tissue_write_abaqus(const char *path, const sn_tissue *tissue, sn_foreign *how);
+SN_API sn_status sn_tissue_read_abaqus(const char *path, sn_tissue *tissue, sn_foreign *how);
+
 //---- fields --------------------------------------------------------------------------------------
 
 /// A ParaView collection: one .vtu a frame and a .pvd that is complete after every frame.

@@ -18,7 +18,11 @@ typedef struct cli_command {
     int (*run)(const struct cli_command *command, int argc, char **argv);
 } cli_command;
 
-extern const cli_command cli_analyze, cli_fit, cli_test, cli_run, cli_compare, cli_bench;
+extern const cli_command cli_analyze, cli_fit, cli_test, cli_run, cli_compare, cli_bench, cli_lists,
+    cli_convert;
+
+int cli_command_count(void);
+const cli_command *cli_command_at(int index);
 
 typedef enum cli_kind {
     CLI_FLAG,     ///< bool
@@ -52,6 +56,11 @@ typedef struct cli_arguments {
 /// Parses options. @return -1 to go on, or the exit code (help printed, bad option reported).
 int cli_parse(const cli_command *command, int argc, char **argv, const cli_option *options,
               int option_count, cli_arguments *arguments);
+/// Receives the options of a command, with their defaults.
+typedef void cli_option_visitor(void *context, const cli_command *command,
+                                const cli_option *options, int count);
+/// Calls a command as far as its options and hands them to `visit` instead of parsing anything.
+void cli_visit_options(const cli_command *command, cli_option_visitor *visit, void *context);
 /// Prints "sinew: text" on standard error. @return CLI_BAD_INPUT
 int cli_refuse(const char *format, ...) SN_PRINTF(1, 2);
 /// Prints sn_error_text() and gives the exit code that belongs to the status.

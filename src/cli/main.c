@@ -6,10 +6,19 @@
 #include "cli/cli.h"
 
 static const cli_command *const commands[] = {
-    &cli_analyze, &cli_fit, &cli_test, &cli_run, &cli_compare, &cli_bench,
+    &cli_analyze, &cli_fit, &cli_test, &cli_run, &cli_compare, &cli_bench, &cli_convert, &cli_lists,
 };
 
 #define COMMANDS ((int)(sizeof commands / sizeof commands[0]))
+
+int cli_command_count(void) {
+    return COMMANDS;
+}
+
+const cli_command *cli_command_at(int index) {
+    SN_ASSERT(index >= 0 && index < COMMANDS);
+    return commands[index];
+}
 
 static void print_help(void) {
     printf("sinew %s - soft tissue from the testing machine to the simulator\n\n", sn_version());

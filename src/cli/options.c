@@ -104,8 +104,24 @@ static int bad_option(const cli_command *command, char **argv, const struct opti
                       argv[optind - 1], command->name);
 }
 
+// whoever wants to see options instead of using them; NULL in ordinary calls
+static cli_option_visitor *visitor;
+static void *visitor_context;
+
+void cli_visit_options(const cli_command *command, cli_option_visitor *visit, void *context) {
+    char *argv[] = {(char[]){"options"}, NULL};
+    visitor = visit;
+    visitor_context = context;
+    command->run(command, 1, argv);
+    visitor = NULL;
+}
+
 int cli_parse(const cli_command *command, int argc, char **argv, const cli_option *options,
               int option_count, cli_arguments *arguments) {
+    if (visitor) {
+        visitor(visitor_context, command, options, option_count);
+        return CLI_DONE;
+    }
     struct option known[OPTIONS_MAX] = {{"help", no_argument, NULL, OPTION_HELP},
                                         {"json", no_argument, NULL, OPTION_JSON},
                                         {"quiet", no_argument, NULL, OPTION_QUIET}};
