@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // A net is constant: build it once, share it. A state is all that changes. A step reads the net and
-// the inputs of the state, and writes the state; it allocates nothing and opens nothing.
+// the inputs of the state, and writes the state; it allocates nothing and opens nothing. With
+// c->springs.threads above 1 a state has threads of its own (none may outlive it), which wait for
+// work by spinning for some 50 microseconds and then sleep: the first step after a pause wakes
+// them, the only system call. Results have the same bits for any number of threads.
 #pragma once
 
 #include "sinew/model.h"
@@ -62,21 +65,36 @@ SN_API void sn_state_tool_force(const sn_net *net, const sn_state *state, int to
 SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                                 sn_record *history);
 
+/// What a row of the benchmark times: whole steps of a block of `cells`^3 mirrored cells, 0.1 m
+/// wide, clamped below (E = 10 kPa, density 1000 kg/m3, Poisson's ratio 0.45).
+typedef struct sn_springs_bench_plan {
+    sn_rung rung;
+    bool volume;
+    const char *law; ///< central: exponential; coupled: neo-hookean or demiray. NULL: the first
+    int memory_terms, cells, threads;
+    sn_precision precision;
+} sn_springs_bench_plan;
+
 /// One row of the benchmark of the force kernels.
 typedef struct sn_springs_bench_row {
-    char model[SN_NAME_MAX];
+    char model[SN_NAME_MAX], law[SN_NAME_MAX];
     bool volume;
     int memory_terms, nodes, springs, cells, threads;
     sn_precision precision;
     double springs_per_second; ///< 0 for rungs without springs
     double cells_per_second;   ///< 0 for the central rung without volume
-    double bound_per_second;   ///< what measured bandwidth allows for the bytes one item moves
+    double bound_per_second; ///< the lesser of the next two: springs, else cells, that the measured
+                             ///< rates of this processor allow
+    double memory_bound_per_second;     ///< by the bytes that a step moves
+    double arithmetic_bound_per_second; ///< by the operations of a step
+    double plain_per_second;            ///< of a plain loop that does the same, on one thread
+    double step_s;                      ///< the stable step at rest
+    double real_time_factor;            ///< at that step
 } sn_springs_bench_row;
 
-/// Times steps of a block of `cells`^3 mirrored cells (E = 10 kPa, density 1000 kg/m3, exponential
-/// law for central, demiray for coupled).
-SN_API sn_status sn_springs_bench(sn_rung rung, bool volume, int memory_terms, int cells,
-                                  sn_precision precision, sn_springs_bench_row *row);
+/// Times one row: about a second, most of it for the rates of the processor.
+/// @return SN_OK, SN_E_RANGE, SN_E_NAME (law), SN_E_MEMORY.
+SN_API sn_status sn_springs_bench(const sn_springs_bench_plan *plan, sn_springs_bench_row *row);
 
 #ifdef __cplusplus
 }

@@ -1,35 +1,57 @@
 // Times the explicit step.
 // SPDX-License-Identifier: Apache-2.0
 //
-// The bound is what the memory system would allow: the bytes that one item and its share of the
-// nodes move in a step (counted below from the arrays of pass.h), against the bandwidth of a triad
-// a = b + s c over arrays that together are as large as the net's, measured in the same call.
+// Two bounds. Memory: the bytes that a step moves, counted below from the arrays of pass.h, against
+// the bandwidth of a triad a = b + s c over arrays that together are as large as the net's.
+// Arithmetic: the operations of a step, counted from the formulas of the kernels (a division or
+// root as one), against the rate of independent multiplications and additions in the widest
+// registers; not fused, as kernels use no fused operation. Both are measured in the same call, on
+// one thread, and count double for two threads. Beside it runs a plain loop (springs/bench_plain.h)
+// that does the same work.
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
+#include "springs/bench_plain.h"
 #include "springs/net.h"
 
 static const double young = 1e4, density = 1000, poisson = 0.45, edge = 0.1; // SI
 static const double least_time = 0.15;                                       // seconds of a sample
 enum { SAMPLES = 5 };
 
-static sn_status bench_tissue(sn_rung rung, bool volume, int memory_terms, sn_tissue *t) {
+static sn_status bench_law(const sn_springs_bench_plan *plan, sn_tissue *t) {
+    const double shear = young / (2 * (1 + poisson));
+    const bool central = plan->rung == SN_RUNG_CENTRAL;
+    const char *name = plan->law ? plan->law : central ? "exponential" : "neo-hookean";
+    t->law = sn_law_find(name);
+    if (!t->law) return SN_E_NAME;
+    sn_param_defaults(t->law->params, t->law->param_count, 0, t->value);
+    if (central && strcmp(name, "exponential") == 0) {
+        SN_TRY(sn_tissue_set(t, "B", 5));
+        SN_TRY(sn_tissue_set(t, "C", young));
+        t->poissons_ratio = plan->volume ? poisson : 0.25;
+        return SN_OK;
+    }
+    if (!central && strcmp(name, "demiray") == 0) {
+        SN_TRY(sn_tissue_set(t, "c", shear));
+        SN_TRY(sn_tissue_set(t, "b", 2));
+    } else if (!central && strcmp(name, "neo-hookean") == 0) {
+        SN_TRY(sn_tissue_set(t, "shear_modulus", shear));
+    } else {
+        return sn_fail(SN_E_NAME,
+                       "bench: law %s; expected exponential for central, neo-hookean or "
+                       "demiray for coupled",
+                       name);
+    }
+    return sn_tissue_set(t, "bulk_modulus", young / (3 * (1 - 2 * poisson)));
+}
+
+static sn_status bench_tissue(const sn_springs_bench_plan *plan, sn_tissue *t) {
+    const int memory_terms = plan->memory_terms;
     *t = sn_tissue_default();
     snprintf(t->name, sizeof t->name, "bench");
     t->density = density;
-    t->law = sn_law_find(rung == SN_RUNG_CENTRAL ? "exponential" : "demiray");
-    if (!t->law) return SN_E_NAME;
-    sn_param_defaults(t->law->params, t->law->param_count, 0, t->value);
-    if (rung == SN_RUNG_CENTRAL) {
-        SN_TRY(sn_tissue_set(t, "B", 5));
-        SN_TRY(sn_tissue_set(t, "C", young));
-        t->poissons_ratio = volume ? poisson : 0.25;
-    } else {
-        SN_TRY(sn_tissue_set(t, "c", young / (2 * (1 + poisson))));
-        SN_TRY(sn_tissue_set(t, "b", 2));
-        SN_TRY(sn_tissue_set(t, "bulk_modulus", young / (3 * (1 - 2 * poisson))));
-    }
+    SN_TRY(bench_law(plan, t));
     t->memory = sn_memory_none();
     if (memory_terms == 0) return SN_OK;
     t->memory.law = sn_memory_law_find("prony");
@@ -42,8 +64,8 @@ static sn_status bench_tissue(sn_rung rung, bool volume, int memory_terms, sn_ti
     return SN_OK;
 }
 
-static sn_status bench_case(sn_rung rung, bool volume, int memory_terms, int cells,
-                            sn_precision precision, sn_case **out) {
+static sn_status bench_case(const sn_springs_bench_plan *plan, sn_case **out) {
+    const int cells = plan->cells;
     sn_status status;
     SN_TRY(sn_case_create(out));
     sn_case *c = *out;
@@ -59,16 +81,17 @@ static sn_status bench_case(sn_rung rung, bool volume, int memory_terms, int cel
         status = SN_E_MEMORY;
         goto fail;
     }
-    SN_TRY_GOTO(status, bench_tissue(rung, volume, memory_terms, c->tissue));
+    SN_TRY_GOTO(status, bench_tissue(plan, c->tissue));
     c->support_count = 1;
     c->support[0] =
         (sn_support){.surface = sn_mesh_surface(c->mesh, "bottom"), .fix = {true, true, true}};
     c->gravity[2] = -9.81;
     c->until = 1;
     c->output_every = 0.1;
-    c->springs.rung = rung;
-    c->springs.volume = volume;
-    c->springs.precision = precision;
+    c->springs.rung = plan->rung;
+    c->springs.volume = plan->volume;
+    c->springs.precision = plan->precision;
+    c->springs.threads = plan->threads;
     c->springs.memory_tolerance = 1e-12; // all terms that were asked for
     return SN_OK;
 fail:
@@ -79,21 +102,42 @@ fail:
 
 // bytes of one step
 static double step_bytes(const sn_net *net) {
-    const double r = net->precision == SN_SINGLE ? 4 : 8, index = 4;
-    const double store = 2 * (1 + net->region[0].branches) * (net->region[0].branches > 0);
-    double bytes = 0;
-    if (net->rung == SN_RUNG_CENTRAL) // ends, edge, inverse, stiffness, memory, force, sums
-        bytes += net->springs * (2 * index + (3 + 1 + 1 + store + 4 + 8) * r + 2 * index);
-    if (net->rung == SN_RUNG_COUPLED || net->volume) // nodes, gradients, volume, force, sums
-        bytes += net->cells * (4 * index + (9 + 1 + 16 + 16) * r + 4 * index);
-    if (net->rung == SN_RUNG_COUPLED)
-        bytes += net->cells * store * (net->volume_mode == SN_VOLUME_CELL ? 7 : 6) * r;
-    if (net->volume) { // nodes, gradients and volume again, growth twice, points
-        bytes += net->cells * (4 * index + (9 + 1 + 1 + 4) * r + 8 * index);
-        bytes += net->nodes * (2 + store) * r;
+    const double r = net->precision == SN_SINGLE ? 4 : 8, index = 4, corner = 2;
+    const double store = 2 * (1 + net->region[0].branches) * (net->region[0].branches > 0) * r;
+    const double entry = index + (4 + 4) * r; // node, rest position, displacement
+    const double force = (4 + 4) * r + index; // out and in, item
+    const double springs = net->spring_blocks * (double)SN_BLOCK;
+    const double fans = sn_tiles_entries(&net->fan_tiles);
+    double bytes = springs * (corner * (1 + SN_STAR) / SN_STAR + r + store);
+    bytes += sn_tiles_entries(&net->spring_tiles) * (entry + force);
+    if (net->rung == SN_RUNG_COUPLED) { // corners, gradient, volume
+        const double components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
+        bytes += net->cells * (4 * corner + 10 * r + components * store);
+        bytes += sn_tiles_entries(&net->cell_tiles) * (entry + force + index + r);
     }
-    // weight, force out and in, u and v in and out, inverse mass
-    return bytes + net->nodes * (4 * (1 + 2 + 4 + 1) * r + 3 * index);
+    if (net->volume) { // corners, growth out and in; springs press by fans too
+        const bool press = net->rung == SN_RUNG_CENTRAL;
+        bytes += (press ? 2.0 : 1.0) * (double)net->fan_tiles.corner_count * corner;
+        bytes += fans * (entry + 2 * r + index + (press ? entry + index + r + force : 0));
+        bytes += net->nodes * (2 * r + index + store);
+    }
+    // weight, force out and in, inverse mass, u and v in and out
+    return bytes + net->nodes * ((4 + 8 + 4 + 16) * r + index);
+}
+
+// operations of one step, from the formulas of the kernels
+static double step_operations(const sn_net *net) {
+    const int branches = net->region[0].branches;
+    const double memory = branches > 0 ? 2 + 4 * branches : 0;
+    const bool central = net->rung == SN_RUNG_CENTRAL;
+    double sum = 40.0 * net->nodes; // sums of entries, kick and drift
+    sum += net->springs * (82 + memory);
+    if (!central) {
+        const double law = strcmp(net->region[0].tissue.law->name, "demiray") == 0 ? 130 : 100;
+        sum += net->cells * (265 + law + (net->volume ? 6 : 7) * memory);
+    }
+    if (net->volume) sum += net->cells * (central ? 62 + 60 : 62) + net->nodes * (4 + memory);
+    return sum;
 }
 
 // bytes a second of a triad over `bytes` in all
@@ -120,6 +164,18 @@ static sn_status triad(double bytes, double *bandwidth) {
     return status;
 }
 
+// multiplications and additions a second
+static double arithmetic(const sn_net *net) {
+    double best = 0;
+    for (int sample = 0; sample < SAMPLES; sample++) {
+        const long turns = 200000;
+        double out[8], start = sn_clock();
+        double done = sn_spring_kernels_row(net->isa, net->precision)->peak(turns, out);
+        best = fmax(best, done / (sn_clock() - start));
+    }
+    return best;
+}
+
 // fastest seconds a step, over some samples
 static double step_time(const sn_net *net, sn_state *state) {
     double best = INFINITY;
@@ -136,36 +192,63 @@ static double step_time(const sn_net *net, sn_state *state) {
     return best;
 }
 
-sn_status sn_springs_bench(sn_rung rung, bool volume, int memory_terms, int cells,
-                           sn_precision precision, sn_springs_bench_row *row) {
-    sn_case *c = NULL;
-    sn_net *net = NULL;
-    sn_state *state = NULL;
-    double bandwidth;
-    sn_status status;
-    *row = (sn_springs_bench_row){0};
-    if (cells < 1 || memory_terms < 0 || memory_terms > SN_TERMS_MAX)
-        return sn_fail(SN_E_RANGE,
-                       "bench: %d cells and %d exponentials; expected 1 or more, and 0 "
-                       "to %d",
-                       cells, memory_terms, SN_TERMS_MAX);
-    SN_TRY_GOTO(status, bench_case(rung, volume, memory_terms, cells, precision, &c));
-    SN_TRY_GOTO(status, sn_net_create(c, &net));
-    SN_TRY_GOTO(status, sn_state_create(net, &state));
-    double bytes = step_bytes(net), seconds = step_time(net, state);
-    SN_TRY_GOTO(status, triad(bytes, &bandwidth));
-    snprintf(row->model, sizeof row->model, "%s", rung == SN_RUNG_CENTRAL ? "central" : "coupled");
-    row->volume = volume;
+static sn_status plain_time(const sn_net *net, double *seconds) {
+    sn_plain *plain;
+    *seconds = INFINITY;
+    SN_TRY(sn_plain_create(net, &plain));
+    for (int sample = 0; sample < SAMPLES; sample++) {
+        double start = sn_clock(), time = 0;
+        long steps = 0;
+        for (; time < 0.3 * least_time; steps++, time = sn_clock() - start) sn_plain_step(plain);
+        *seconds = fmin(*seconds, time / (double)steps);
+    }
+    sn_plain_destroy(plain);
+    return SN_OK;
+}
+
+static sn_status fill_row(const sn_net *net, sn_state *state, sn_springs_bench_row *row) {
+    const bool central = net->rung == SN_RUNG_CENTRAL;
+    double bytes = step_bytes(net), seconds = step_time(net, state), bandwidth, plain;
+    SN_TRY(triad(bytes, &bandwidth));
+    SN_TRY(plain_time(net, &plain));
+    const double items = central ? net->springs : net->cells;
+    snprintf(row->model, sizeof row->model, "%s", central ? "central" : "coupled");
+    snprintf(row->law, sizeof row->law, "%s", net->region[0].tissue.law->name);
+    row->volume = net->volume;
     row->memory_terms = net->region[0].memory.terms;
     row->nodes = net->nodes;
     row->springs = net->springs;
     row->cells = net->cells;
-    row->threads = 1;
-    row->precision = precision;
+    row->threads = net->threads;
+    row->precision = net->precision;
     row->springs_per_second = net->springs / seconds;
-    row->cells_per_second = rung == SN_RUNG_COUPLED || volume ? net->cells / seconds : 0;
-    row->bound_per_second =
-        bandwidth * (rung == SN_RUNG_CENTRAL ? net->springs : net->cells) / bytes;
+    row->cells_per_second = !central || net->volume ? net->cells / seconds : 0;
+    row->memory_bound_per_second = net->threads * bandwidth * items / bytes;
+    row->arithmetic_bound_per_second =
+        net->threads * arithmetic(net) * items / step_operations(net);
+    row->bound_per_second = fmin(row->memory_bound_per_second, row->arithmetic_bound_per_second);
+    row->plain_per_second = items / plain;
+    row->step_s = net->step;
+    row->real_time_factor = net->step / seconds;
+    return SN_OK;
+}
+
+sn_status sn_springs_bench(const sn_springs_bench_plan *plan, sn_springs_bench_row *row) {
+    sn_case *c = NULL;
+    sn_net *net = NULL;
+    sn_state *state = NULL;
+    sn_status status;
+    *row = (sn_springs_bench_row){0};
+    if (plan->cells < 1 || plan->memory_terms < 0 || plan->memory_terms > SN_TERMS_MAX ||
+        plan->threads < 1)
+        return sn_fail(SN_E_RANGE,
+                       "bench: %d cells, %d exponentials, %d threads; expected 1 or more, 0 to %d, "
+                       "1 or more",
+                       plan->cells, plan->memory_terms, plan->threads, SN_TERMS_MAX);
+    SN_TRY_GOTO(status, bench_case(plan, &c));
+    SN_TRY_GOTO(status, sn_net_create(c, &net));
+    SN_TRY_GOTO(status, sn_state_create(net, &state));
+    SN_TRY_GOTO(status, fill_row(net, state, row));
 fail:
     sn_state_destroy(state);
     sn_net_destroy(net);

@@ -1,4 +1,4 @@
-// Puts the cells of a case into blocks and lists what touches each volume point.
+// Puts the cells of a case into blocks and weighs the volume points.
 // SPDX-License-Identifier: Apache-2.0
 #include <math.h>
 #include <string.h>
@@ -35,20 +35,29 @@ static double shape_gradients(const sn_net *net, const int *node, double g[9]) {
     return det / 6.0;
 }
 
-// blocks of all regions: how many, and where each region starts
+// blocks of all regions: how many, and where each region starts; the slot of each cell
 static sn_status place_cells(const sn_mesh *mesh, sn_net *net) {
     int *count = sn_alloc((size_t)net->region_count, sizeof *count);
-    if (!count) return SN_E_MEMORY;
+    int *done = sn_alloc((size_t)net->region_count, sizeof *done);
+    int *order = sn_alloc((size_t)mesh->cell_count, sizeof *order);
+    sn_status status = count && done && order ? sn_net_cell_order(mesh, order) : SN_E_MEMORY;
+    if (status != SN_OK) goto fail;
     for (int e = 0; e < mesh->cell_count; e++) count[mesh->region[e]]++;
     for (int r = 0; r < net->region_count; r++) {
         net->region[r].cell_block = net->cell_blocks;
         net->region[r].cell_blocks = blocks_of(count[r]);
         net->cell_blocks += net->region[r].cell_blocks;
-        count[r] = net->region[r].cell_block * SN_BLOCK;
     }
-    for (int e = 0; e < mesh->cell_count; e++) net->cell_slot[e] = count[mesh->region[e]]++;
+    for (int k = 0; k < mesh->cell_count; k++) {
+        const int r = mesh->region[order[k]];
+        net->cell_slot[order[k]] = net->region[r].cell_block * SN_BLOCK +
+                                   sn_spread(done[r]++, count[r], SN_TILE_BLOCKS * SN_BLOCK);
+    }
+fail:
     sn_free(count);
-    return SN_OK;
+    sn_free(done);
+    sn_free(order);
+    return status;
 }
 
 static void fill_slot(sn_net *net, int slot, const int *node, bool real_one) {
@@ -64,14 +73,15 @@ static void fill_slot(sn_net *net, int slot, const int *node, bool real_one) {
 static void fill_cells(const sn_mesh *mesh, sn_net *net) {
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *region = &net->region[r];
-        int last = -1, slot = region->cell_block * SN_BLOCK;
+        int last = -1, count = 0; // the cell of the last slot
         for (int e = 0; e < mesh->cell_count; e++) {
             if (mesh->region[e] != r) continue;
-            fill_slot(net, slot++, mesh->cell + 4 * e, true);
-            last = e;
+            fill_slot(net, net->cell_slot[e], mesh->cell + 4 * e, true);
+            if (last < 0 || net->cell_slot[e] > net->cell_slot[last]) last = e;
+            count++;
         }
-        for (; last >= 0 && slot < (region->cell_block + region->cell_blocks) * SN_BLOCK; slot++)
-            fill_slot(net, slot, mesh->cell + 4 * last, false);
+        for (int k = count; k < region->cell_blocks * SN_BLOCK; k++)
+            fill_slot(net, region->cell_block * SN_BLOCK + k, mesh->cell + 4 * last, false);
     }
 }
 
@@ -113,36 +123,18 @@ static sn_status place_points(const sn_mesh *mesh, sn_net *net) {
     return status;
 }
 
-// cells around each volume point, and K / V of each
-static sn_status list_points(sn_net *net) {
+// V and K / V of each volume point
+static sn_status weigh_points(sn_net *net) {
     const size_t points = (size_t)net->point_blocks * SN_BLOCK;
     const double *volume = net->data[SN_DOUBLE].volume;
-    net->point_start = sn_alloc(points + 1, sizeof *net->point_start);
-    net->point_item = sn_alloc((size_t)net->cells * 4, sizeof *net->point_item);
     net->point_volume = sn_alloc(points, sizeof *net->point_volume);
     double *stiffness = net->data[SN_DOUBLE].point_stiffness = sn_alloc(points, sizeof *stiffness);
-    int *fill = sn_alloc(points + 1, sizeof *fill);
-    if (!net->point_start || !net->point_item || !net->point_volume || !stiffness || !fill) {
-        sn_free(fill);
-        return SN_E_MEMORY;
-    }
-    for (int pass = 0; pass < 2; pass++) {
-        for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
-            if (!(volume[s] > 0)) continue;
-            for (int a = 0; a < 4; a++) {
-                int p = net->cell_point[((size_t)(s / SN_BLOCK) * 4 + (size_t)a) * SN_BLOCK +
-                                        (size_t)(s % SN_BLOCK)];
-                if (pass == 0) {
-                    net->point_start[p + 1]++;
-                    net->point_volume[p] += 0.25 * volume[s];
-                } else {
-                    net->point_item[fill[p]++] = s;
-                }
-            }
-        }
-        if (pass == 0)
-            for (size_t p = 0; p < points; p++) net->point_start[p + 1] += net->point_start[p];
-        memcpy(fill, net->point_start, (points + 1) * sizeof *fill);
+    if (!net->point_volume || !stiffness) return SN_E_MEMORY;
+    for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
+        if (!(volume[s] > 0)) continue;
+        for (int a = 0; a < 4; a++)
+            net->point_volume[net->cell_point[(s / SN_BLOCK * 4 + a) * SN_BLOCK + s % SN_BLOCK]] +=
+                0.25 * volume[s];
     }
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *region = &net->region[r];
@@ -150,7 +142,6 @@ static sn_status list_points(sn_net *net) {
              p < (region->point_block + region->point_blocks) * SN_BLOCK; p++)
             stiffness[p] = net->point_volume[p] > 0 ? region->bulk / net->point_volume[p] : 0.0;
     }
-    sn_free(fill);
     return SN_OK;
 }
 
@@ -168,5 +159,5 @@ sn_status sn_net_build_cells(const sn_case *c, sn_net *net) {
     fill_cells(c->mesh, net);
     if (!net->volume) return SN_OK;
     SN_TRY(place_points(c->mesh, net));
-    return list_points(net);
+    return weigh_points(net);
 }

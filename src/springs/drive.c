@@ -267,10 +267,6 @@ bool sn_net_changes(const sn_net *net, double from, double to) {
     return changes;
 }
 
-double sn_real_at(sn_precision precision, const void *array, size_t i) {
-    return precision == SN_SINGLE ? (double)((const float *)array)[i] : ((const double *)array)[i];
-}
-
 static void position(const sn_net *net, sn_precision precision, const void *u, int node,
                      double x[3]) {
     for (int d = 0; d < 3; d++)

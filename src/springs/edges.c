@@ -1,4 +1,4 @@
-// Turns the edges of a case into springs, and lists what touches each node.
+// Turns the edges of a case into springs.
 // SPDX-License-Identifier: Apache-2.0
 //
 // Every region has springs of its own; an edge between two regions carries one of each. On the
@@ -80,57 +80,24 @@ static double class_constant(const constants *c, const double D[3]) {
     return c->face[along[0] == 0 && along[1] == 2 ? 2 : along[0]]; // xy yz zx
 }
 
-typedef struct spring {
-    int low, high;
-    double edge[3], length2, stiffness, volume;
-} spring;
-
 // gathers the parts of one edge; returns how many there are
 static int gather(const sn_net *net, const sn_net_region *region, const constants *k,
-                  const edge_part *part, int left, spring *s) {
+                  const edge_part *part, int left, sn_spring *s) {
     int n = 0;
     double turn = 0;
-    *s = (spring){.low = part->low, .high = part->high};
-    for (; n < left && part[n].low == s->low && part[n].high == s->high; n++) {
+    *s = (sn_spring){.end = {part->low, part->high}};
+    for (; n < left && part[n].low == part->low && part[n].high == part->high; n++) {
         s->volume += part[n].volume;
         turn += part[n].turn;
     }
     for (int d = 0; d < 3; d++) {
-        s->edge[d] = net->node_position[3 * s->high + d] - net->node_position[3 * s->low + d];
+        s->edge[d] = net->node_position[3 * s->end[1] + d] - net->node_position[3 * s->end[0] + d];
         s->length2 += s->edge[d] * s->edge[d];
     }
     double shear = region->shear * region->stiffening;
     s->stiffness = k->classes ? shear * turn * class_constant(k, s->edge)
                               : 15.0 * shear * (s->volume / 6.0) / s->length2;
     return n;
-}
-
-static void store_spring(sn_net *net, int slot, const spring *s, double stiffness) {
-    const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
-    sn_net_data *data = &net->data[SN_DOUBLE];
-    net->spring_end[block * 2 * SN_BLOCK + lane] = s->low;
-    net->spring_end[(block * 2 + 1) * SN_BLOCK + lane] = s->high;
-    for (size_t d = 0; d < 3; d++)
-        ((double *)data->edge)[(block * 3 + d) * SN_BLOCK + lane] = s->edge[d];
-    ((double *)data->inverse)[slot] = 1.0 / s->length2;
-    ((double *)data->stiffness)[slot] = stiffness;
-    net->spring_volume[slot] = s->volume;
-}
-
-static sn_status grow_springs(sn_net *net, int blocks) {
-    sn_net_data *data = &net->data[SN_DOUBLE];
-    const size_t slots = (size_t)blocks * SN_BLOCK;
-    void *end = sn_resize(net->spring_end, slots * 2, sizeof(int));
-    if (end) net->spring_end = end;
-    void *edge = sn_resize(data->edge, slots * 3, sizeof(double));
-    if (edge) data->edge = edge;
-    void *inverse = sn_resize(data->inverse, slots, sizeof(double));
-    if (inverse) data->inverse = inverse;
-    void *stiffness = sn_resize(data->stiffness, slots, sizeof(double));
-    if (stiffness) data->stiffness = stiffness;
-    void *volume = sn_resize(net->spring_volume, slots, sizeof(double));
-    if (volume) net->spring_volume = volume;
-    return end && edge && inverse && stiffness && volume ? SN_OK : SN_E_MEMORY;
 }
 
 // sorts the parts of a region by edge: first by low node with buckets, then inside a bucket
@@ -171,41 +138,24 @@ static sn_status sorted_parts(const sn_mesh *mesh, const sn_net *net, int r, edg
 static sn_status region_springs(const sn_mesh *mesh, sn_net *net, int r, const constants *k) {
     sn_net_region *region = &net->region[r];
     edge_part *part = NULL;
-    int count, first = net->spring_blocks * SN_BLOCK, slot = first;
-    sn_status status = sorted_parts(mesh, net, r, &part, &count);
-    spring s;
-    for (int i = 0; i < count && status == SN_OK;) {
-        i += gather(net, region, k, part + i, count - i, &s);
-        if (s.stiffness <= 0) continue;
-        if (slot % SN_BLOCK == 0) {
-            // room for half as much again, so that growing costs little
-            int blocks = slot / SN_BLOCK;
-            if (blocks == net->spring_blocks) {
-                net->spring_blocks = blocks + 8 + blocks / 2;
-                status = grow_springs(net, net->spring_blocks);
-                if (status != SN_OK) break;
-            }
-        }
-        store_spring(net, slot++, &s, s.stiffness);
+    sn_spring *spring = NULL;
+    int count, springs = 0;
+    sn_status status;
+    SN_TRY_GOTO(status, sorted_parts(mesh, net, r, &part, &count));
+    spring = sn_alloc((size_t)count, sizeof *spring);
+    if (!spring) {
+        status = SN_E_MEMORY;
+        goto fail;
     }
+    for (int i = 0; i < count;) {
+        i += gather(net, region, k, part + i, count - i, &spring[springs]);
+        springs += spring[springs].stiffness > 0;
+    }
+    status = sn_net_place_springs(net, region, spring, springs);
+fail:
     sn_free(part);
-    region->spring_block = first / SN_BLOCK;
-    region->spring_count = slot - first;
-    region->spring_blocks = (slot - first + SN_BLOCK - 1) / SN_BLOCK;
-    net->spring_blocks = region->spring_block + region->spring_blocks;
-    net->springs += region->spring_count;
-    if (status != SN_OK || slot == first) return status;
-    // the last spring again, without stiffness
-    int last = slot - 1;
-    const double *edge = (double *)net->data[SN_DOUBLE].edge;
-    size_t block = (size_t)last / SN_BLOCK, lane = (size_t)last % SN_BLOCK;
-    s.low = net->spring_end[block * 2 * SN_BLOCK + lane];
-    s.high = net->spring_end[(block * 2 + 1) * SN_BLOCK + lane];
-    s.length2 = 1.0 / ((double *)net->data[SN_DOUBLE].inverse)[last];
-    for (size_t d = 0; d < 3; d++) s.edge[d] = edge[(block * 3 + d) * SN_BLOCK + lane];
-    s.volume = 0;
-    for (; slot < net->spring_blocks * SN_BLOCK; slot++) store_spring(net, slot, &s, 0.0);
-    return SN_OK;
+    sn_free(spring);
+    return status;
 }
 
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net) {
@@ -215,57 +165,5 @@ sn_status sn_net_build_springs(const sn_case *c, sn_net *net) {
         for (int d = 0; d < 3; d++) k.h[d] = c->shape.size[d] / c->shape.cells[d];
     }
     for (int r = 0; r < net->region_count; r++) SN_TRY(region_springs(c->mesh, net, r, &k));
-    return SN_OK;
-}
-
-//---- node lists ----------------------------------------------------------------------------------
-
-// counts (item NULL) or fills the three lists of every node; `at` counts, then points into item
-static void list_nodes(const sn_net *net, int *at, int *item) {
-    const double *stiffness = net->data[SN_DOUBLE].stiffness, *volume = net->data[SN_DOUBLE].volume;
-    for (int s = 0; s < net->spring_blocks * SN_BLOCK; s++) {
-        if (!(stiffness[s] > 0)) continue;
-        for (int end = 0; end < 2; end++) {
-            size_t k =
-                ((size_t)(s / SN_BLOCK) * 2 + (size_t)end) * SN_BLOCK + (size_t)(s % SN_BLOCK);
-            int *place = &at[3 * net->spring_end[k] + end];
-            if (item)
-                item[(*place)++] = s;
-            else
-                ++*place;
-        }
-    }
-    if (net->rung == SN_RUNG_CENTRAL && !net->volume) return;
-    for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
-        if (!(volume[s] > 0)) continue;
-        for (int a = 0; a < 4; a++) {
-            int k = ((s / SN_BLOCK) * 4 + a) * SN_BLOCK + s % SN_BLOCK;
-            int *place = &at[3 * net->cell_node[k] + 2];
-            if (item)
-                item[(*place)++] = k;
-            else
-                ++*place;
-        }
-    }
-}
-
-sn_status sn_net_build_nodes(sn_net *net) {
-    const size_t lists = (size_t)net->nodes * 3;
-    int *at = sn_alloc(lists + 1, sizeof *at);
-    net->node_start = sn_alloc(lists + 1, sizeof *net->node_start);
-    if (!at || !net->node_start) {
-        sn_free(at);
-        return SN_E_MEMORY;
-    }
-    list_nodes(net, at, NULL);
-    for (size_t k = 0; k < lists; k++) net->node_start[k + 1] = net->node_start[k] + at[k];
-    net->node_item = sn_alloc((size_t)net->node_start[lists], sizeof *net->node_item);
-    if (!net->node_item) {
-        sn_free(at);
-        return SN_E_MEMORY;
-    }
-    memcpy(at, net->node_start, lists * sizeof *at);
-    list_nodes(net, at, net->node_item);
-    sn_free(at);
     return SN_OK;
 }

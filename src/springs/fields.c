@@ -12,7 +12,7 @@
 #include "springs/net.h"
 
 struct sn_fields {
-    double *displacement, *velocity, *pressure; ///< nodes
+    double *displacement, *velocity, *pressure; ///< nodes of the mesh
     double *strain, *stress, *energy;           ///< cells of the mesh
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
@@ -209,8 +209,9 @@ static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
-            f->displacement[3 * i + d] = sn_real_at(m->precision, m->u, at);
-            f->velocity[3 * i + d] = m->v ? sn_real_at(m->precision, m->v, at) : 0.0;
+            int to = 3 * net->node_name[i] + d;
+            f->displacement[to] = sn_real_at(m->precision, m->u, at);
+            f->velocity[to] = m->v ? sn_real_at(m->precision, m->v, at) : 0.0;
         }
 }
 
@@ -236,8 +237,9 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
         if (net->volume) nodal_volume(net, region, f, m, slot, stress, &f->energy[e]);
         const int *corner = net->cell_node + (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
         for (int a = 0; a < 4; a++) {
-            f->pressure[corner[a * SN_BLOCK]] -= c.V * (stress[0] + stress[1] + stress[2]) / 3.0;
-            f->around[corner[a * SN_BLOCK]] += c.V;
+            const int node = net->node_name[corner[a * SN_BLOCK]];
+            f->pressure[node] -= c.V * (stress[0] + stress[1] + stress[2]) / 3.0;
+            f->around[node] += c.V;
         }
     }
     for (int i = 0; i < net->nodes; i++) f->pressure[i] /= f->around[i];

@@ -1,4 +1,4 @@
-// Calls the kernels in order: volumes, volume points, cells, springs, nodes.
+// Calls the kernels in order: volumes, volume points, springs and cells, nodes.
 // SPDX-License-Identifier: Apache-2.0
 #include <string.h>
 
@@ -28,116 +28,167 @@ static void set_memory(const sn_net_region *region, const sn_force_call *call, s
 }
 
 static void set_cells(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
-                      sn_cell_pass *pass) {
+                      const sn_factors *factors, sn_cell_pass *pass) {
     const sn_net_data *data = &net->data[call->precision];
-    const sn_precision p = call->precision;
-    const size_t slot = (size_t)region->cell_block * SN_BLOCK;
-    pass->blocks = region->cell_blocks;
-    pass->node = net->cell_node + 4 * slot;
-    pass->gradient = at(data->gradient, p, 9 * slot);
-    pass->volume = at(data->volume, p, slot);
+    pass->gradient = data->gradient;
+    pass->volume = data->volume;
     pass->u = call->u;
     memcpy(pass->axes, net->axes, sizeof pass->axes);
     pass->rotated = net->rotated;
-    pass->law = net->rung == SN_RUNG_COUPLED ? region->tissue.law : NULL;
+    pass->law = region->tissue.law;
     pass->value = region->tissue.value;
     pass->value_f = region->value_f;
     pass->terms = region->tissue.terms;
     pass->volume_mode = net->volume_mode;
     pass->bulk = region->bulk;
-    pass->point = net->cell_point + 4 * slot;
     pass->pressure = call->out->pressure;
-    pass->growth = at(call->out->growth, p, slot);
-    pass->force = at(call->out->cell_force, p, 16 * slot);
+    pass->first = region->cell_block;
+    set_memory(region, call, region->cell_store, factors, &pass->memory);
 }
 
 static void set_springs(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
-                        sn_spring_pass *pass) {
-    const sn_net_data *data = &net->data[call->precision];
-    const sn_precision p = call->precision;
-    const size_t slot = (size_t)region->spring_block * SN_BLOCK;
-    pass->blocks = region->spring_blocks;
-    pass->end = net->spring_end + 2 * slot;
-    pass->edge = at(data->edge, p, 3 * slot);
-    pass->inverse = at(data->inverse, p, slot);
-    pass->stiffness = at(data->stiffness, p, slot);
+                        const sn_factors *factors, sn_spring_pass *pass) {
+    pass->stiffness = net->data[call->precision].stiffness;
     pass->exponent = region->exponent;
     pass->u = call->u;
-    pass->force = at(call->out->spring_force, p, 4 * slot);
+    pass->first = region->spring_block;
+    set_memory(region, call, region->spring_store, factors, &pass->memory);
 }
 
-static void volume_points(const sn_net *net, const sn_spring_kernels *kernels,
-                          const sn_force_call *call) {
-    for (int r = 0; r < net->region_count; r++) {
-        sn_cell_pass pass;
-        set_cells(net, &net->region[r], call, &pass);
-        kernels->volumes(&pass);
-    }
-    for (int r = 0; r < net->region_count; r++) {
-        const sn_net_region *region = &net->region[r];
-        const size_t point = (size_t)region->point_block * SN_BLOCK;
-        sn_point_pass pass = {
-            .blocks = region->point_blocks,
-            .start = net->point_start + point,
-            .item = net->point_item,
-            .growth = call->out->growth,
-            .stiffness = at(net->data[call->precision].point_stiffness, call->precision, point),
-            .pressure = at(call->out->pressure, call->precision, point)};
-        set_memory(region, call, region->point_store, call->factors ? &call->factors[r] : NULL,
-                   &pass.memory);
-        kernels->points(&pass);
-    }
+static void set_points(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
+                       const sn_factors *factors, sn_point_pass *pass) {
+    pass->start = net->point_start;
+    pass->item = net->point_item;
+    pass->growth = call->out->growth;
+    pass->stiffness = net->data[call->precision].point_stiffness;
+    pass->pressure = call->out->pressure;
+    pass->first = region->point_block;
+    set_memory(region, call, region->point_store, factors, &pass->memory);
+}
+
+//---- tasks ---------------------------------------------------------------------------------------
+
+/// One evaluation of the forces.
+typedef struct force_work {
+    const sn_net *net;
+    const sn_force_call *call;
+    const sn_spring_kernels *kernels;
+    sn_node_pass nodes;
+} force_work;
+
+// part: first entry of these tiles among all forces
+static sn_tile tile_of(const force_work *w, const sn_tiles *t, int k, int part) {
+    const sn_precision p = w->call->precision;
+    const size_t entry = (size_t)t->start[k];
+    const sn_tile_place *place = &t->place[k];
+    return (sn_tile){.block = place->block,
+                     .blocks = place->blocks,
+                     .nodes = t->start[k + 1] - t->start[k],
+                     .node = t->node + entry,
+                     .point = t->point ? t->point + entry : NULL,
+                     .corner = t->corner + place->corner,
+                     .ring = place->ring,
+                     .closed = place->closed,
+                     .position = at(t->position[p], p, 4 * entry),
+                     .force = at(w->call->out->part, p, 4 * ((size_t)part + entry)),
+                     .growth = at(w->call->out->growth, p, entry)};
+}
+
+static void volume_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->fan_tiles;
+    const sn_tile tile = tile_of(w, t, k, 0);
+    w->kernels->volumes(&w->call->out->cells[t->place[k].region], &tile);
+}
+
+static void point_task(void *context, int block) {
+    const force_work *w = context;
+    int r = 0;
+    while (block >= w->net->region[r].point_block + w->net->region[r].point_blocks) r++;
+    w->kernels->points(&w->call->out->points[r], block);
+}
+
+static void spring_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->spring_tiles;
+    const sn_tile tile = tile_of(w, t, k, 0);
+    w->kernels->springs(&w->call->out->springs[t->place[k].region], &tile);
+}
+
+static void cell_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->cell_tiles;
+    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    w->kernels->cells(&w->call->out->cells[t->place[k].region], &tile);
+}
+
+static void press_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->fan_tiles;
+    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    w->kernels->press(&w->call->out->cells[t->place[k].region], &tile);
+}
+
+// springs, then what presses on the same nodes
+static void central_task(void *context, int k) {
+    const force_work *w = context;
+    if (k < w->net->spring_tiles.count)
+        spring_task(context, k);
+    else
+        press_task(context, k - w->net->spring_tiles.count);
+}
+
+static void node_task(void *context, int chunk) {
+    const force_work *w = context;
+    w->kernels->nodes(&w->nodes, chunk);
 }
 
 void sn_net_forces(const sn_net *net, const sn_force_call *call) {
-    const sn_spring_kernels *kernels = sn_spring_kernels_row(net->isa, call->precision);
-    if (net->volume) volume_points(net, kernels, call);
+    force_work w = {.net = net,
+                    .call = call,
+                    .kernels = sn_spring_kernels_row(net->isa, call->precision),
+                    .nodes = {.nodes = net->nodes,
+                              .weight = net->data[call->precision].weight,
+                              .start = net->node_start,
+                              .item = net->node_item,
+                              .part = call->out->part,
+                              .force = call->out->f}};
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *region = &net->region[r];
         const sn_factors *factors = call->factors ? &call->factors[r] : NULL;
-        if (net->rung == SN_RUNG_COUPLED || net->volume) {
-            sn_cell_pass pass;
-            set_cells(net, region, call, &pass);
-            set_memory(region, call, region->cell_store, factors, &pass.memory);
-            kernels->cells(&pass);
-        }
-        if (net->rung == SN_RUNG_CENTRAL) {
-            sn_spring_pass pass;
-            set_springs(net, region, call, &pass);
-            set_memory(region, call, region->spring_store, factors, &pass.memory);
-            kernels->springs(&pass);
-        }
+        set_cells(net, region, call, factors, &call->out->cells[r]);
+        set_springs(net, region, call, factors, &call->out->springs[r]);
+        set_points(net, region, call, factors, &call->out->points[r]);
     }
-    const sn_node_pass pass = {.nodes = net->nodes,
-                               .weight = net->data[call->precision].weight,
-                               .start = net->node_start,
-                               .item = net->node_item,
-                               .spring_force = call->out->spring_force,
-                               .cell_force = call->out->cell_force,
-                               .force = call->out->f};
-    kernels->nodes(&pass);
+    if (net->volume) {
+        sn_team_run(call->team, net->fan_tiles.count, volume_task, &w);
+        sn_team_run(call->team, net->point_blocks, point_task, &w);
+    }
+    if (net->rung == SN_RUNG_COUPLED)
+        sn_team_run(call->team, net->cell_tiles.count, cell_task, &w);
+    else
+        sn_team_run(call->team, net->spring_tiles.count + net->fan_tiles.count, central_task, &w);
+    sn_team_run(call->team, sn_net_chunks(net), node_task, &w);
 }
 
 sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratch *scratch) {
-    const size_t size = real_size(precision);
-    const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
+    const size_t size = real_size(precision), regions = (size_t)net->region_count;
     scratch->f = sn_alloc((size_t)net->nodes * 4, size);
-    scratch->cell_force =
-        sn_alloc(net->rung == SN_RUNG_COUPLED || net->volume ? cells * 16 : 0, size);
-    scratch->spring_force = sn_alloc((size_t)net->spring_blocks * SN_BLOCK * 4, size);
-    scratch->growth = sn_alloc(net->volume ? cells : 0, size);
+    scratch->part = sn_alloc((size_t)net->part_count * 4, size);
+    scratch->growth = sn_alloc((size_t)sn_tiles_entries(&net->fan_tiles), size);
     scratch->pressure = sn_alloc((size_t)net->point_blocks * SN_BLOCK, size);
-    bool all = scratch->f && scratch->cell_force && scratch->spring_force && scratch->growth &&
-               scratch->pressure;
+    scratch->cells = sn_alloc(regions, sizeof *scratch->cells);
+    scratch->springs = sn_alloc(regions, sizeof *scratch->springs);
+    scratch->points = sn_alloc(regions, sizeof *scratch->points);
+    bool all = scratch->f && scratch->part && scratch->growth && scratch->pressure &&
+               scratch->cells && scratch->springs && scratch->points;
     return all ? SN_OK : SN_E_MEMORY;
 }
 
 void sn_scratch_destroy(sn_scratch *scratch) {
-    sn_free(scratch->f);
-    sn_free(scratch->cell_force);
-    sn_free(scratch->spring_force);
-    sn_free(scratch->growth);
-    sn_free(scratch->pressure);
+    void *all[] = {scratch->f,     scratch->part,    scratch->growth, scratch->pressure,
+                   scratch->cells, scratch->springs, scratch->points};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     *scratch = (sn_scratch){0};
 }
 

@@ -19,8 +19,11 @@ static double dot(const double *a, const double *b, size_t n) {
 }
 
 static void evaluate(const sn_net *net, const sn_frequency_call *call, const double *u) {
-    sn_force_call force = {
-        .precision = SN_DOUBLE, .mode = SN_MEMORY_OFF, .u = u, .out = call->scratch};
+    sn_force_call force = {.precision = SN_DOUBLE,
+                           .mode = SN_MEMORY_OFF,
+                           .u = u,
+                           .out = call->scratch,
+                           .team = call->team};
     sn_net_forces(net, &force);
 }
 
@@ -144,7 +147,7 @@ sn_status sn_net_find_step(sn_net *net) {
         net->contact_omega2 =
             fmax(net->contact_omega2, net->contact_stiffness[k] / net->mass[net->contact_node[k]]);
     if (status == SN_OK) {
-        const sn_frequency_call call = {u, trial, net->mode, basis, SN_LANCZOS_MAX, &scratch};
+        const sn_frequency_call call = {u, trial, net->mode, basis, SN_LANCZOS_MAX, &scratch, NULL};
         net->omega2 = search(net, &call);
         double longest =
             SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2 + net->contact_omega2);

@@ -170,17 +170,25 @@ static sn_status to_single(const void *from, size_t count, void **to) {
     return SN_OK;
 }
 
+static sn_status single_positions(sn_tiles *t) {
+    return to_single(t->position[SN_DOUBLE], (size_t)sn_tiles_entries(t) * 4,
+                     &t->position[SN_SINGLE]);
+}
+
 static sn_status copy_single(sn_net *net) {
     if (net->precision == SN_DOUBLE) return SN_OK;
     const sn_net_data *d = &net->data[SN_DOUBLE];
     sn_net_data *s = &net->data[SN_SINGLE];
     const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
     const size_t springs = (size_t)net->spring_blocks * SN_BLOCK, nodes = (size_t)net->nodes * 4;
-    SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
-    SN_TRY(to_single(d->volume, cells, &s->volume));
-    SN_TRY(to_single(d->edge, springs * 3, &s->edge));
-    SN_TRY(to_single(d->inverse, springs, &s->inverse));
+    if (net->rung == SN_RUNG_COUPLED) {
+        SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
+        SN_TRY(to_single(d->volume, cells, &s->volume));
+    }
     SN_TRY(to_single(d->stiffness, springs, &s->stiffness));
+    SN_TRY(single_positions(&net->cell_tiles));
+    SN_TRY(single_positions(&net->spring_tiles));
+    SN_TRY(single_positions(&net->fan_tiles));
     SN_TRY(
         to_single(d->point_stiffness, (size_t)net->point_blocks * SN_BLOCK, &s->point_stiffness));
     SN_TRY(to_single(d->weight, nodes, &s->weight));
@@ -188,12 +196,13 @@ static sn_status copy_single(sn_net *net) {
 }
 
 // appends the springs of a region that start at corner a of a cell and end at another corner
-static int add_shares(sn_net *net, const sn_net_region *g, const int *corner, int a, int count) {
-    const int first = g->spring_block * SN_BLOCK,
-              *list = net->node_start + 3 * corner[a * SN_BLOCK];
-    for (int k = list[0]; k < list[1]; k++) {
-        const int spring = net->node_item[k];
-        if (spring < first || spring >= first + g->spring_count) continue;
+static int add_shares(sn_net *net, const sn_net_region *g, const int *from, const int *list,
+                      const int *corner, int a, int count) {
+    const int first = g->spring_block * SN_BLOCK, last = first + g->spring_blocks * SN_BLOCK;
+    const int node = corner[a * SN_BLOCK];
+    for (int k = from[node]; k < from[node + 1]; k++) {
+        const int spring = list[k];
+        if (spring < first || spring >= last) continue;
         int end = net->spring_end[(spring / SN_BLOCK * 2 + 1) * SN_BLOCK + spring % SN_BLOCK];
         for (int b = 0; b < 4; b++)
             if (corner[b * SN_BLOCK] == end) net->spring_share[count++] = spring;
@@ -201,27 +210,47 @@ static int add_shares(sn_net *net, const sn_net_region *g, const int *corner, in
     return count;
 }
 
+// springs by the node they start at: from (nodes + 2), list (springs)
+static void list_starts(const sn_net *net, int *from, int *list) {
+    const double *stiffness = net->data[SN_DOUBLE].stiffness;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int s = 0; s < net->spring_blocks * SN_BLOCK; s++) {
+            if (!(stiffness[s] > 0)) continue;
+            const int node = net->spring_end[s / SN_BLOCK * 2 * SN_BLOCK + s % SN_BLOCK];
+            if (pass == 0)
+                from[node + 2]++;
+            else
+                list[from[node + 1]++] = s;
+        }
+        for (int i = 0; i < net->nodes && pass == 0; i++) from[i + 2] += from[i + 1];
+    }
+}
+
 // springs around each cell, for stresses on the central rung
 static sn_status list_shares(sn_net *net) {
     if (net->rung != SN_RUNG_CENTRAL) return SN_OK;
     const size_t slots = (size_t)net->cell_blocks * SN_BLOCK;
+    const double *volume = net->data[SN_DOUBLE].volume;
+    int *from = sn_alloc((size_t)net->nodes + 2, sizeof *from), count = 0;
+    int *list = sn_alloc((size_t)net->springs, sizeof *list);
     net->spring_share_start = sn_alloc(slots + 1, sizeof(int));
     net->spring_share = sn_alloc((size_t)net->cells * 6, sizeof(int));
-    if (!net->spring_share_start || !net->spring_share) return SN_E_MEMORY;
-    const double *volume = net->data[SN_DOUBLE].volume;
-    int count = 0;
-    for (int r = 0; r < net->region_count; r++) {
+    const bool all = from && list && net->spring_share_start && net->spring_share;
+    if (all) list_starts(net, from, list);
+    for (int r = 0; r < net->region_count && all; r++) {
         const sn_net_region *g = &net->region[r];
         for (int s = g->cell_block * SN_BLOCK; s < (g->cell_block + g->cell_blocks) * SN_BLOCK;
              s++) {
             net->spring_share_start[s] = count;
             if (!(volume[s] > 0)) continue; // filling
             const int *corner = net->cell_node + (s / SN_BLOCK) * 4 * SN_BLOCK + s % SN_BLOCK;
-            for (int a = 0; a < 4; a++) count = add_shares(net, g, corner, a, count);
+            for (int a = 0; a < 4; a++) count = add_shares(net, g, from, list, corner, a, count);
         }
     }
-    net->spring_share_start[slots] = count;
-    return SN_OK;
+    if (all) net->spring_share_start[slots] = count;
+    sn_free(from);
+    sn_free(list);
+    return all ? SN_OK : SN_E_MEMORY;
 }
 
 //---- whole ---------------------------------------------------------------------------------------
@@ -243,9 +272,10 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->output_every = c->output_every;
     net->asked_step = def->step;
     memcpy(net->gravity, c->gravity, sizeof net->gravity);
-    if (def->threads > 1)
-        snprintf(net->note, sizeof net->note, "%d threads were asked for; this version runs on 1. ",
-                 def->threads);
+    net->threads = sn_team_limit(def->threads);
+    if (net->threads < def->threads)
+        snprintf(net->note, sizeof net->note, "%d threads were asked for; this build runs on %d. ",
+                 def->threads, net->threads);
     net->node_position = sn_alloc((size_t)net->nodes * 3, sizeof(double));
     net->region_count = c->mesh->region_count;
     net->region = sn_alloc((size_t)net->region_count, sizeof *net->region);
@@ -263,14 +293,12 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     return SN_OK;
 }
 
+// of a case whose mesh has its nodes in the net's order
 static sn_status build(const sn_case *c, sn_net *net) {
-    SN_TRY(check_settings(c));
-    SN_TRY(sn_case_check(c));
-    SN_TRY(check_motion(c));
     SN_TRY(copy_case(c, net));
     SN_TRY(sn_net_build_cells(c, net));
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(sn_net_build_springs(c, net));
-    SN_TRY(sn_net_build_nodes(net));
+    SN_TRY(sn_net_build_tiles(c, net));
     SN_TRY(list_shares(net));
     SN_TRY(set_masses(c, net));
     SN_TRY(sn_net_build_drive(c, net));
@@ -295,9 +323,18 @@ static sn_status build(const sn_case *c, sn_net *net) {
 
 sn_status sn_net_create(const sn_case *c, sn_net **net) {
     *net = NULL;
+    SN_TRY(check_settings(c));
+    SN_TRY(sn_case_check(c));
+    SN_TRY(check_motion(c));
     sn_net *n = sn_alloc(1, sizeof *n);
     if (!n) return SN_E_MEMORY;
-    sn_status status = build(c, n);
+    sn_case ordered = *c;
+    ordered.mesh = NULL;
+    n->node_name = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_name);
+    sn_status status =
+        n->node_name ? sn_net_order_nodes(c->mesh, &ordered.mesh, n->node_name) : SN_E_MEMORY;
+    if (status == SN_OK) status = build(&ordered, n);
+    sn_mesh_destroy(ordered.mesh);
     if (status != SN_OK) {
         sn_net_destroy(n);
         return status;
@@ -332,11 +369,14 @@ void sn_net_destroy(sn_net *n) {
     destroy_data(&n->data[SN_SINGLE]);
     destroy_data(&n->data[SN_DOUBLE]);
     destroy_drive(n);
-    void *all[] = {n->region,      n->cell_node,          n->cell_point,    n->cell_slot,
-                   n->spring_end,  n->spring_share_start, n->spring_share,  n->spring_volume,
-                   n->point_start, n->point_item,         n->point_node,    n->point_volume,
-                   n->node_start,  n->node_item,          n->node_position, n->mass,
-                   n->mode};
+    sn_tiles_destroy(&n->cell_tiles);
+    sn_tiles_destroy(&n->spring_tiles);
+    sn_tiles_destroy(&n->fan_tiles);
+    void *all[] = {n->node_name,     n->region,      n->cell_node,          n->cell_point,
+                   n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
+                   n->spring_volume, n->point_start, n->point_item,         n->point_node,
+                   n->point_volume,  n->node_start,  n->node_item,          n->node_position,
+                   n->mass,          n->mode};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(n);
 }

@@ -10,6 +10,7 @@
 
 #include "sinew/springs.h"
 #include "springs/pass.h"
+#include "springs/team.h"
 
 /// Part of a net: the cells, springs and volume points of one region of the mesh.
 typedef struct sn_net_region {
@@ -23,15 +24,54 @@ typedef struct sn_net_region {
     sn_exponentials memory;
     int branches; ///< exponentials and the viscous part
     int cell_block, cell_blocks;
-    int spring_block, spring_blocks, spring_count;
+    int spring_block, spring_blocks;
     int point_block, point_blocks;
     size_t cell_store, spring_store, point_store; ///< first number in the state's store
 } sn_net_region;
 
-/// What kernels read, in one precision.
+typedef struct sn_tile_place {
+    int region;
+    int block, blocks;
+    int ring; ///< of fans
+    bool closed;
+    size_t corner; ///< first in `corner` of sn_tiles
+} sn_tile_place;
+
+/// Blocks of one kind in tiles (springs/pass.h), region by region.
+typedef struct sn_tiles {
+    int count;
+    sn_tile_place *place; ///<                                    (count)
+    int *start;           ///< first entry of `node` of each, and the end (count + 1)
+    int *node;            ///< nodes of the tiles, rising in each
+    int *point;           ///< volume point of each; NULL without
+    size_t corner_count;
+    uint16_t *corner;  ///< four times the place in `node` from the tile's start
+    void *position[2]; ///< quads, by sn_precision: rest positions from the tile's first node
+} sn_tiles;
+
+static inline int sn_tiles_entries(const sn_tiles *t) {
+    return t->count > 0 ? t->start[t->count] : 0;
+}
+
+/// A spring that has no place yet.
+typedef struct sn_spring {
+    int end[2];
+    double edge[3]; ///< from end 0 to end 1
+    double length2, stiffness;
+    double volume; ///< of the cells around it
+} sn_spring;
+
+/// Cells around one edge.
+typedef struct sn_fan {
+    int ring;    ///< nodes around the edge
+    bool closed; ///< the last meets the first
+    int node[2 + SN_FAN_RING];
+} sn_fan;
+
+/// What kernels read, in one precision. Single precision has only what the step reads.
 typedef struct sn_net_data {
-    void *gradient, *volume;          ///< cells
-    void *edge, *inverse, *stiffness; ///< springs
+    void *gradient, *volume;          ///< cells; single: coupled only
+    void *edge, *inverse, *stiffness; ///< springs; edge and 1 / length2: double only
     void *point_stiffness;            ///< volume points
     void *weight, *inverse_mass;      ///< nodes, quads
 } sn_net_data;
@@ -68,7 +108,7 @@ struct sn_net {
     sn_volume_mode volume_mode;
     sn_integrator integrator;
     sn_precision precision; ///< of the explicit step
-    int isa;
+    int isa, threads;
     double damping;
     double until, output_every;
     double asked_step; ///< of the case; 0: chosen
@@ -89,12 +129,16 @@ struct sn_net {
     int *spring_share_start; ///< springs of each slot of a cell (cell_blocks x SN_BLOCK + 1)
     int *spring_share;       ///< slot of the spring
     double *spring_volume;   ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
-    int *point_start, *point_item;
+    sn_tiles spring_tiles, cell_tiles, fan_tiles; ///< central, coupled, with volume
+    int part_count;                               ///< entries of springs, then of cells or fans
+    int other_part;                               ///< first entry of cells or fans
+    int *point_start, *point_item;                ///< entries of fan tiles at each volume point
     int *point_node;      ///< node of each volume point; -1 for filling (point_blocks x SN_BLOCK)
     double *point_volume; ///<                                (point_blocks x SN_BLOCK)
-    int *node_start, *node_item;
-    double *node_position; ///<                               (nodes x 3)
-    double *mass;          ///<                               (nodes)
+    int *node_start, *node_item; ///< entries of tiles at each node
+    int *node_name;              ///< number in the mesh of each node (nodes)
+    double *node_position;       ///<                         (nodes x 3)
+    double *mass;                ///<                               (nodes)
     double gravity[3];
     double axes[9];
     bool rotated;
@@ -127,11 +171,13 @@ typedef struct sn_factors {
 
 /// Arrays that one evaluation of the forces fills.
 typedef struct sn_scratch {
-    void *f;            ///< quads                            (nodes)
-    void *cell_force;   ///< quads                            (cell_blocks x 4 x SN_BLOCK)
-    void *spring_force; ///< quads                            (spring_blocks x SN_BLOCK)
-    void *growth;       ///<                                  (cell_blocks x SN_BLOCK)
-    void *pressure;     ///<                                  (point_blocks x SN_BLOCK)
+    void *f;             ///< quads                                (nodes)
+    void *part;          ///< quads: forces of the entries of tiles (part_count)
+    void *growth;        ///< of the entries of fan tiles
+    void *pressure;      ///<                                      (point_blocks x SN_BLOCK)
+    sn_cell_pass *cells; ///< what kernels are told, by region (region_count)
+    sn_spring_pass *springs;
+    sn_point_pass *points;
 } sn_scratch;
 
 struct sn_state {
@@ -141,13 +187,15 @@ struct sn_state {
     void *f_before; ///< quads: total force at the start of the last step
     void *store;
     sn_scratch now;
-    double factors_step; ///< of `factors`; 0: none yet
-    sn_factors *factors; ///< (region_count)
-    double last_step;    ///< length of the last step
-    double *a_fixed;     ///< acceleration of prescribed directions (fixed_count)
-    double *ext;         ///< force of loads and tools             (nodes x 3)
-    sn_contact *contact; ///< (tool_count x contact_count)
-    sn_pose *tool_pose;  ///< where sn_state_set_tool() put it
+    sn_team *team;                     ///< NULL: alone
+    double *chunk_sum, *chunk_fastest; ///< of sn_move_pass
+    double factors_step;               ///< of `factors`; 0: none yet
+    sn_factors *factors;               ///< (region_count)
+    double last_step;                  ///< length of the last step
+    double *a_fixed;                   ///< acceleration of prescribed directions (fixed_count)
+    double *ext;                       ///< force of loads and tools             (nodes x 3)
+    sn_contact *contact;               ///< (tool_count x contact_count)
+    sn_pose *tool_pose;                ///< where sn_state_set_tool() put it
     bool *tool_set;
     double (*tool_force)[3];
     // the search for the highest frequency, always double
@@ -169,8 +217,29 @@ struct sn_state {
 sn_status sn_net_build_cells(const sn_case *c, sn_net *net);
 /// Edges into springs: `stiffness` class constants or the volume rule.
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net);
-/// Lists of items around each node. After cells and springs.
-sn_status sn_net_build_nodes(sn_net *net);
+/// Places the springs of a region, sorted by end 0, in stars.
+sn_status sn_net_place_springs(sn_net *net, sn_net_region *region, const sn_spring *spring,
+                               int count);
+/// Tiles, and the lists of nodes and volume points. After cells and springs.
+sn_status sn_net_build_tiles(const sn_case *c, sn_net *net);
+/// All cells of a region in fans: by size, then along the curve. *fans is sn_alloc'd for the
+/// caller.
+sn_status sn_net_list_fans(const sn_mesh *mesh, int region, sn_fan **fans, int *count);
+void sn_tiles_destroy(sn_tiles *tiles); // the struct itself is the caller's
+/// A copy of the mesh with its nodes in the order of a space-filling curve. name[k]: number in
+/// `mesh` of node k of the copy. Cells keep their numbers.
+sn_status sn_net_order_nodes(const sn_mesh *mesh, sn_mesh **ordered, int *name);
+/// order[k]: which cell is the k-th on the curve.
+sn_status sn_net_cell_order(const sn_mesh *mesh, int *order);
+/// Slot, from its first, of item k of `count` along the curve. Within a chunk, items that follow
+/// each other on the curve, and share nodes, stand 16 slots apart, and neighbours are far from each
+/// other on the curve: a sum at a node then need not wait for the one before.
+static inline int sn_spread(int k, int count, int chunk) {
+    enum { APART = 16 };
+    if (k / chunk * chunk + chunk > count) chunk = SN_BLOCK; // the rest, in smaller ones
+    const int first = k / chunk * chunk, place = k - first, runs = chunk / APART;
+    return first + chunk > count ? k : first + place % runs * APART + place / runs;
+}
 /// Supports, loads, tools, probes.
 sn_status sn_net_build_drive(const sn_case *c, sn_net *net);
 /// Stiffness per unit shear modulus of an edge that is wholly present, by class of the built-in
@@ -178,6 +247,11 @@ sn_status sn_net_build_drive(const sn_case *c, sn_net *net);
 bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face[3], double *body);
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
+
+/// Calls of the kernels that go over nodes.
+static inline int sn_net_chunks(const sn_net *net) {
+    return (net->nodes + SN_NODE_CHUNK - 1) / SN_NODE_CHUNK;
+}
 
 //---- forces --------------------------------------------------------------------------------------
 
@@ -189,6 +263,7 @@ typedef struct sn_force_call {
     void *store;               ///< ADVANCE
     const void *history;       ///< TRIAL
     sn_scratch *out;
+    sn_team *team; ///< Nullable: alone
 } sn_force_call;
 /// Internal forces and weight at all nodes, in out->f.
 void sn_net_forces(const sn_net *net, const sn_force_call *call);
@@ -240,6 +315,7 @@ typedef struct sn_frequency_call {
     double *basis;   ///< scratch                             (SN_LANCZOS_MAX + 1 vectors)
     int steps;       ///< at most SN_LANCZOS_MAX
     sn_scratch *scratch;
+    sn_team *team; ///< Nullable: alone
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 #define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
@@ -253,7 +329,9 @@ double sn_net_stable_step(const sn_net *net, double omega2);
 
 //---- what a run hands out ------------------------------------------------------------------------
 
-double sn_real_at(sn_precision precision, const void *array, size_t i);
+static inline double sn_real_at(sn_precision precision, const void *array, size_t i) {
+    return precision == SN_SINGLE ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
 
 /// A moment of a run, in double: what fields, history and energies are computed from.
 typedef struct sn_moment {

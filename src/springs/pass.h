@@ -6,19 +6,35 @@
 // filled up with copies of their last item whose volume or stiffness is 0, so no kernel has a tail.
 // What nodes carry (displacement, velocity, force) are quads: x y z and an unused fourth number.
 //
-// A step has two passes. The first reads node displacements and writes a force for every item; the
-// second sums, node by node, over the items that touch it, in the order of its list. Nothing is
-// scattered, so the sum has one order whatever the number of lanes or threads.
+// Consecutive blocks of one kind and one region make a tile: so few that what their nodes carry
+// fits the first cache. A tile reads its nodes once, works on copies, and adds the forces of its
+// items up in an array of its own, one entry for each of its nodes, in the order of its items. Then
+// every node sums the entries of its tiles, in the order of its list. No two tiles write to one
+// place and every sum has one order, whatever the number of lanes or threads.
+//
+// Springs stand in stars of SN_STAR that share their end 0: spring n of a star stands n SN_BLOCK /
+// SN_STAR slots after the first. The corners of a star are its middle and the other ends.
+//
+// The volume of cells is computed by fans: cells around one edge, which share two nodes each with
+// the next. A fan of six cells reads and writes 8 nodes, where six cells alone do 24. Fans stand in
+// blocks of SN_FAN_BLOCK, all of one size and kind in a tile.
 //
 // `void *` stands for arrays of float or double: the precision of the kernel that is called.
 #pragma once
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "sinew/law.h"
 #include "sinew/model.h"
 
 #define SN_BLOCK 128
+#define SN_STAR 4                          ///< springs of a star
+#define SN_FAN_BLOCK 32                    ///< fans in a block
+#define SN_FAN_RING 8                      ///< most nodes around the edge of a fan
+#define SN_TILE_BLOCKS 8                   ///< most blocks of a tile
+#define SN_TILE_NODES 512                  ///< most nodes of a tile; four times SN_BLOCK at least
+#define SN_NODE_CHUNK 256                  ///< nodes that one call of a kernel moves or sums
 #define SN_BRANCHES_MAX (SN_TERMS_MAX + 1) ///< exponentials and the viscous part
 
 /// How an instantaneous stress becomes the stress with memory.
@@ -44,61 +60,67 @@ typedef enum sn_volume_mode {
     SN_VOLUME_NODE  ///< mean pressure of the four volume points
 } sn_volume_mode;
 
-/// The cells of one region.
+/// Consecutive blocks of items that share nodes.
+typedef struct sn_tile {
+    int block, blocks;
+    int nodes;
+    const int *node;        ///< of the net                       (nodes)
+    const int *point;       ///< volume point of each node        (nodes)
+    const uint16_t *corner; ///< of the items: four times the place in `node`
+                            ///<                                  (blocks x corners x SN_BLOCK)
+    int ring;               ///< fans: nodes around the edge; corners are its ends, then these
+    bool closed;            ///< fans: the last node of the ring meets the first
+    const void *position;   ///< quads: at rest, from some origin  (nodes)
+    void *force;            ///< out: quads                       (nodes)
+    void *growth;           ///< out of the volume pass, m3       (nodes)
+} sn_tile;
+
+/// The cells of one region. Arrays of items start at block 0 of the net.
 typedef struct sn_cell_pass {
-    int blocks;
-    const int *node;      ///<                                    (blocks x 4 x SN_BLOCK)
     const void *gradient; ///< of shape functions 1 2 3, 1/m      (blocks x 9 x SN_BLOCK)
     const void *volume;   ///< m3                                 (blocks x SN_BLOCK)
     const void *u;        ///< quads
     double axes[9];       ///< rotation to material axes
     bool rotated;         ///< axes are not the identity
-    const sn_law *law;    ///< NULL: only the volume term (central rung)
+    const sn_law *law;
     const double *value;
     const float *value_f;
     int terms;
     sn_volume_mode volume_mode;
     double bulk;
-    const int *point;      ///< volume points of the corners       (blocks x 4 x SN_BLOCK)
     const void *pressure;  ///< at the volume points
+    int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< 6 components, 7 with SN_VOLUME_CELL
-    void *growth;          ///< out of the volume pass: V (J - 1) / 4, m3   (blocks x SN_BLOCK)
-    void *force;           ///< out of the force pass: quads       (blocks x 4 x SN_BLOCK)
 } sn_cell_pass;
 
 /// The volume points of one region: a node, as far as it belongs to this region.
 typedef struct sn_point_pass {
-    int blocks;
-    const int *start; ///< into `item`, of this region's points (blocks x SN_BLOCK + 1)
-    const int *item;  ///< cells: index into `growth`
-    const void *growth;
+    const int *start;      ///< into `item`                        (blocks x SN_BLOCK + 1)
+    const int *item;       ///< entries of `growth`
+    const void *growth;    ///< of the nodes of tiles
     const void *stiffness; ///< K / V of the point, Pa/m3         (blocks x SN_BLOCK)
+    int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< one component
     void *pressure;        ///< out                                 (blocks x SN_BLOCK)
 } sn_point_pass;
 
 /// The springs of one region.
 typedef struct sn_spring_pass {
-    int blocks;
-    const int *end;        ///<                                   (blocks x 2 x SN_BLOCK)
-    const void *edge;      ///< rest vector from end 0 to end 1, m (blocks x 3 x SN_BLOCK)
-    const void *inverse;   ///< 1 / rest length squared           (blocks x SN_BLOCK)
     const void *stiffness; ///< N/m                               (blocks x SN_BLOCK)
     double exponent;       ///< B of the law
     const void *u;
+    int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< one component: force over stiffness and rest length
-    void *force;           ///< out: on end 0; end 1 gets the opposite. quads (blocks x SN_BLOCK)
 } sn_spring_pass;
 
-/// Sums item forces at nodes.
+/// Sums the entries of tiles at nodes.
 typedef struct sn_node_pass {
     int nodes;
     const void *weight; ///< quads: mass times gravity
-    const int *start;   ///< three lists a node: springs that end 0 here, end 1, cell corners
-                        ///<                                      (3 x nodes + 1)
-    const int *item;    ///< quads in spring_force or cell_force
-    const void *spring_force, *cell_force;
-    void *force; ///< out: quads
+    const int *start;   ///<                                     (nodes + 1)
+    const int *item;    ///< entries of `part`
+    const void *part;   ///< quads: forces of the nodes of tiles
+    void *force;        ///< out: quads
 } sn_node_pass;
 
 /// Kick and drift of symplectic Euler.
@@ -109,17 +131,19 @@ typedef struct sn_move_pass {
     const void *force;        ///< quads
     const void *inverse_mass; ///< quads: 0 in prescribed directions
     void *u, *v;
-    double sum;     ///< out: sum of squared velocities; not finite when the state is not
-    double fastest; ///< out: bound of the speed of any node: the largest component times sqrt 3
+    double *sum;     ///< out, by chunk: sum of squared velocities; not finite when the state is not
+    double *fastest; ///< out, by chunk: square of the largest component of a velocity
 } sn_move_pass;
 
 typedef struct sn_spring_kernels {
-    void (*volumes)(const sn_cell_pass *pass); ///< fills growth
-    void (*points)(const sn_point_pass *pass);
-    void (*cells)(const sn_cell_pass *pass);
-    void (*springs)(const sn_spring_pass *pass);
-    void (*nodes)(const sn_node_pass *pass);
-    void (*move)(sn_move_pass *pass);
+    void (*volumes)(const sn_cell_pass *pass, const sn_tile *tile); ///< fills growth, by fans
+    void (*points)(const sn_point_pass *pass, int block);
+    void (*cells)(const sn_cell_pass *pass, const sn_tile *tile);
+    void (*press)(const sn_cell_pass *pass, const sn_tile *tile); ///< pressure alone, by fans
+    void (*springs)(const sn_spring_pass *pass, const sn_tile *tile);
+    void (*nodes)(const sn_node_pass *pass, int chunk);
+    void (*move)(const sn_move_pass *pass, int chunk);
+    double (*peak)(long turns, double *out); ///< independent arithmetic; returns operations done
 } sn_spring_kernels;
 
 /// The kernels of an instruction set (base/isa.h) and a precision.

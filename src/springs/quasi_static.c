@@ -108,7 +108,8 @@ static double find_residual(solver *v, sn_memory_mode mode) {
                                 .factors = s->factors,
                                 .store = s->store,
                                 .history = v->history,
-                                .out = &s->now};
+                                .out = &s->now,
+                                .team = s->team};
     sn_net_forces(net, &call);
     external(v, NULL);
     double *f = s->now.f, free2 = 0, fixed2 = 0, ext2 = 0;

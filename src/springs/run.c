@@ -62,7 +62,7 @@ static void describe(const sn_net *net, sn_run_summary *s) {
     s->cells = net->cells;
     s->springs = net->springs;
     s->unknowns = 3 * net->nodes - net->fixed_count;
-    s->threads = 1;
+    s->threads = net->threads;
     snprintf(s->note, sizeof s->note, "%s", net->note);
     for (int r = 0; r < net->region_count; r++) {
         const sn_exponentials *e = &net->region[r].memory;

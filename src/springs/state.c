@@ -51,6 +51,8 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->factors = sn_alloc((size_t)net->region_count, sizeof *s->factors);
     s->a_fixed = sn_alloc((size_t)net->fixed_count, sizeof *s->a_fixed);
     s->ext = sn_alloc(nodes * 3, sizeof *s->ext);
+    s->chunk_sum = sn_alloc((size_t)sn_net_chunks(net), sizeof *s->chunk_sum);
+    s->chunk_fastest = sn_alloc((size_t)sn_net_chunks(net), sizeof *s->chunk_fastest);
     s->contact = sn_alloc(tools * (size_t)net->contact_count, sizeof *s->contact);
     s->tool_pose = sn_alloc(tools, sizeof *s->tool_pose);
     s->tool_set = sn_alloc(tools, sizeof *s->tool_set);
@@ -61,11 +63,16 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_MAX + 1) : 0, sizeof *s->basis);
     bool all = s->u && s->v && s->f_before && s->store && s->factors && s->a_fixed && s->ext &&
                s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_u &&
-               s->probe_trial && s->mode && s->basis;
+               s->probe_trial && s->mode && s->basis && s->chunk_sum && s->chunk_fastest;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
         (steps && sn_scratch_create(net, SN_DOUBLE, &s->probe) != SN_OK)) {
         sn_state_destroy(s);
         return SN_E_MEMORY;
+    }
+    sn_status status = sn_team_create(net->threads, &s->team);
+    if (status != SN_OK) {
+        sn_state_destroy(s);
+        return status;
     }
     sn_state_reset(net, s);
     *state = s;
@@ -74,11 +81,13 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
 
 void sn_state_destroy(sn_state *s) {
     if (!s) return;
+    sn_team_destroy(s->team);
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
-    void *all[] = {s->u,       s->v,       s->f_before,    s->store,    s->factors,
-                   s->a_fixed, s->ext,     s->contact,     s->tool_set, s->tool_pose,
-                   s->mode,    s->probe_u, s->probe_trial, s->basis,    s->tool_force};
+    void *all[] = {s->chunk_sum, s->chunk_fastest, s->u,       s->v,       s->f_before,
+                   s->store,     s->factors,       s->a_fixed, s->ext,     s->contact,
+                   s->tool_set,  s->tool_pose,     s->mode,    s->probe_u, s->probe_trial,
+                   s->basis,     s->tool_force};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(s);
 }
@@ -90,7 +99,8 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                 .u = s->u,
                                 .factors = s->factors,
                                 .store = s->store,
-                                .out = &s->now};
+                                .out = &s->now,
+                                .team = s->team};
     sn_net_forces(net, &call);
     if (net->loaded_count == 0) return;
     sn_net_clear_ext(net, s->ext);
@@ -256,6 +266,39 @@ static void damp(const sn_net *net, sn_state *s, double h) {
 
 //---- steps ---------------------------------------------------------------------------------------
 
+typedef struct move_work {
+    const sn_spring_kernels *kernels;
+    sn_move_pass pass;
+} move_work;
+
+static void move_task(void *context, int chunk) {
+    const move_work *w = context;
+    w->kernels->move(&w->pass, chunk);
+}
+
+// kick by the force and drift; the sum of squared velocities and a bound of the speed of any node
+static void move_nodes(const sn_net *net, sn_state *s, const void *force, double h, double *sum,
+                       double *fastest) {
+    move_work w = {.kernels = sn_spring_kernels_row(net->isa, s->precision),
+                   .pass = {.nodes = net->nodes,
+                            .step = h,
+                            .kick = 0.5 * (s->last_step + h),
+                            .force = force,
+                            .inverse_mass = net->data[s->precision].inverse_mass,
+                            .u = s->u,
+                            .v = s->v,
+                            .sum = s->chunk_sum,
+                            .fastest = s->chunk_fastest}};
+    double largest = 0;
+    sn_team_run(s->team, sn_net_chunks(net), move_task, &w);
+    *sum = 0;
+    for (int k = 0; k < sn_net_chunks(net); k++) {
+        *sum += s->chunk_sum[k];
+        largest = fmax(largest, s->chunk_fastest[k]);
+    }
+    *fastest = sqrt(3 * largest);
+}
+
 static void move_prescribed(const sn_net *net, sn_state *s, double h) {
     for (int k = 0; k < net->fixed_count; k++) {
         const sn_net_fixed *fixed = &net->fixed[k];
@@ -273,8 +316,8 @@ static void move_prescribed(const sn_net *net, sn_state *s, double h) {
 static void look_at_frequency(const sn_net *net, sn_state *s) {
     for (int i = 0; i < 4 * net->nodes; i++)
         s->probe_u[i] = sn_real_at(s->precision, s->u, (size_t)i);
-    const sn_frequency_call call = {s->probe_u, s->probe_trial,  s->mode,
-                                    s->basis,   SN_LANCZOS_WARM, &s->probe};
+    const sn_frequency_call call = {s->probe_u,      s->probe_trial, s->mode, s->basis,
+                                    SN_LANCZOS_WARM, &s->probe,      s->team};
     double omega2 = sn_net_frequency(net, &call);
     if (isfinite(omega2) && omega2 > 0) {
         double growth = omega2 / s->seen_omega2;
@@ -313,26 +356,20 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     void *f = s->now.f;
     s->now.f = s->f_before;
     s->f_before = f;
-    sn_move_pass move = {.nodes = net->nodes,
-                         .step = h,
-                         .kick = 0.5 * (s->last_step + h),
-                         .force = f,
-                         .inverse_mass = net->data[s->precision].inverse_mass,
-                         .u = s->u,
-                         .v = s->v};
-    sn_spring_kernels_row(net->isa, s->precision)->move(&move);
+    double sum, fastest;
+    move_nodes(net, s, f, h, &sum, &fastest);
     move_prescribed(net, s, h);
     s->time += h;
     s->last_step = h;
     s->steps++;
-    if (!isfinite(move.sum)) {
+    if (!isfinite(sum)) {
         s->broken = true;
         s->warnings++;
         put_to_rest(net, s);
         return (sn_step_info){s->time, h, s->warnings};
     }
     find_forces(net, s, SN_MEMORY_ADVANCE);
-    s->moved += h * move.fastest;
+    s->moved += h * fastest;
     s->check_in--;
     double way = touched(net, s) ? fmin(s->check_way, way_touched * net->edge) : s->check_way;
     if (s->check_in <= 0 || (s->moved > way && s->check_every - s->check_in >= CHECK_LEAST))
@@ -343,8 +380,9 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
 void sn_state_positions(const sn_net *net, const sn_state *s, double *out) {
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++)
-            out[3 * i + d] = net->node_position[3 * i + d] +
-                             sn_real_at(s->precision, s->u, 4 * (size_t)i + (size_t)d);
+            out[3 * net->node_name[i] + d] =
+                net->node_position[3 * i + d] +
+                sn_real_at(s->precision, s->u, 4 * (size_t)i + (size_t)d);
 }
 
 void sn_state_tool_force(const sn_net *net, const sn_state *s, int tool, double force[3]) {

@@ -15,7 +15,16 @@ static double *random_motion(const sn_case *c, double amount, uint64_t seed) {
     return u;
 }
 
-static double *forces_at(const sn_net *net, const double *u) {
+// a net has an order of nodes of its own: what stands at node_name[i] of the mesh, at node i
+static double *to_net(const sn_net *net, const double *x) {
+    double *y = sn_alloc((size_t)net->nodes * 4, sizeof *y);
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 4; d++) y[4 * i + d] = x[4 * net->node_name[i] + d];
+    return y;
+}
+
+// of a net's own order
+static double *own_forces_at(const sn_net *net, const double *u) {
     sn_scratch scratch = {0};
     CHECK_OK(sn_scratch_create(net, SN_DOUBLE, &scratch));
     const sn_force_call call = {
@@ -24,6 +33,16 @@ static double *forces_at(const sn_net *net, const double *u) {
     double *f = sn_alloc((size_t)sn_net_node_count(net) * 4, sizeof *f);
     memcpy(f, scratch.f, (size_t)sn_net_node_count(net) * 4 * sizeof *f);
     sn_scratch_destroy(&scratch);
+    return f;
+}
+
+static double *forces_at(const sn_net *net, const double *u) {
+    double *own = to_net(net, u), *g = own_forces_at(net, own);
+    double *f = sn_alloc((size_t)net->nodes * 4, sizeof *f);
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 4; d++) f[4 * net->node_name[i] + d] = g[4 * i + d];
+    sn_free(own);
+    sn_free(g);
     return f;
 }
 
@@ -38,9 +57,11 @@ static double elastic_at(const sn_net *net, const double *u) {
     sn_fields *fields;
     CHECK_OK(sn_fields_create(net, &fields));
     double *pressure = sn_alloc((size_t)net->point_blocks * SN_BLOCK + 1, sizeof *pressure);
-    const sn_moment m = {.precision = SN_DOUBLE, .u = u, .pressure = pressure};
+    double *own = to_net(net, u);
+    const sn_moment m = {.precision = SN_DOUBLE, .u = own, .pressure = pressure};
     sn_fields_fill(net, fields, &m);
     double energy = sn_fields_elastic(net, fields);
+    sn_free(own);
     sn_free(pressure);
     sn_fields_destroy(fields);
     return energy;
@@ -269,9 +290,9 @@ static void tangent_is_force_slope(const sn_case *c, const sn_net *net) {
     for (int k = 0; k < 3 * n; k++) x[k] = v[4 * (k / 3) + k % 3];
     sn_tangent_multiply(net, t, x, y);
     for (int k = 0; k < 4 * n; k++) u[k] += h * v[k];
-    double *up = forces_at(net, u);
+    double *up = own_forces_at(net, u);
     for (int k = 0; k < 4 * n; k++) u[k] -= 2 * h * v[k];
-    double *down = forces_at(net, u), worst = 0, scale = 0;
+    double *down = own_forces_at(net, u), worst = 0, scale = 0;
     for (int k = 0; k < 3 * n; k++) {
         int at = 4 * (k / 3) + k % 3;
         worst = fmax(worst, fabs(y[k] + (up[at] - down[at]) / (2 * h)));

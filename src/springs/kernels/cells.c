@@ -9,25 +9,44 @@
 //     f_a = -V (F S + p cof F) g_a,   f_0 = -(f_1 + f_2 + f_3).
 #include "springs/kernels/block.h"
 
-void SN_KERNEL(sn_cells)(const sn_cell_pass *pass);
-void SN_KERNEL(sn_volumes)(const sn_cell_pass *pass);
+void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile);
 
 typedef struct cell_block {
     real H[9 * SN_BLOCK]; // displacement gradient; before that differences of displacements
     real E[6 * SN_BLOCK];
-    real T[7 * SN_BLOCK]; // stress: six components of S, then p
+    real T[7 * SN_BLOCK];  // stress: six components of S, then p
+    real f[12 * SN_BLOCK]; // forces on the corners
 } cell_block;
+
+static const block_layout layout = {
+    .width = SN_BLOCK, .component = SN_BLOCK, .spoke = 3 * SN_BLOCK};
 
 SN_INLINE void load9(const real *from, int i, wide x[9]) {
     for (int k = 0; k < 9; k++) x[k] = wide_load(from + k * SN_BLOCK + i);
 }
 
-// H = sum over corners 1 2 3 of (u_a - u_0) g_a
-SN_INLINE void displacement_gradient(const sn_cell_pass *pass, size_t at, cell_block *c) {
-    const int *node = pass->node + 4 * at;
+// mean of the pressure of the corners; difference: of corners 1 2 3 from corner 0
+SN_INLINE void mean_pressure(const tile_nodes *nodes, const uint16_t *corner,
+                             const real *difference, real *p) {
+    const real quarter = (real)0.25;
+    block_pressure(nodes, corner, SN_BLOCK, p);
+    for (int i = 0; i < SN_BLOCK; i += SN_LANES)
+        wide_store(p + i, wide_load(p + i) + quarter * (wide_load(difference + i) +
+                                                        wide_load(difference + SN_BLOCK + i) +
+                                                        wide_load(difference + 2 * SN_BLOCK + i)));
+}
+
+// H = sum over corners 1 2 3 of (u_a - u_0) g_a, and p
+SN_INLINE void displacement_gradient(const sn_cell_pass *pass, const tile_nodes *nodes,
+                                     const uint16_t *corner, size_t at, cell_block *c) {
     const real *gradient = (const real *)pass->gradient + 9 * at;
-    for (int a = 0; a < 3; a++)
-        block_difference(pass->u, node, node + (a + 1) * SN_BLOCK, c->H + 3 * a * SN_BLOCK);
+    const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
+    if (nodal) {
+        block_spokes(nodes, corner, 3, layout, c->H, NULL, c->f);
+        mean_pressure(nodes, corner, c->f, c->T + 6 * SN_BLOCK);
+    } else {
+        block_spokes(nodes, corner, 3, layout, c->H, NULL, NULL);
+    }
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide d[9], g[9];
         load9(c->H, i, d);
@@ -86,16 +105,12 @@ SN_INLINE void piola(const sn_cell_pass *pass, const cell_block *c, int i, wide 
     load9(c->H, i, F);
     for (int r = 0; r < 3; r++)
         for (int s = 0; s < 3; s++) F[3 * r + s] = F[3 * r + s] + (real)pass->axes[3 * s + r];
-    if (pass->law) {
-        for (int k = 0; k < 6; k++) S[k] = wide_load(c->T + k * SN_BLOCK + i);
-        for (int r = 0; r < 3; r++) {
-            const wide *f = F + 3 * r;
-            P[3 * r] = f[0] * S[0] + f[1] * S[3] + f[2] * S[5];
-            P[3 * r + 1] = f[0] * S[3] + f[1] * S[1] + f[2] * S[4];
-            P[3 * r + 2] = f[0] * S[5] + f[1] * S[4] + f[2] * S[2];
-        }
-    } else {
-        for (int k = 0; k < 9; k++) P[k] = wide_set(0);
+    for (int k = 0; k < 6; k++) S[k] = wide_load(c->T + k * SN_BLOCK + i);
+    for (int r = 0; r < 3; r++) {
+        const wide *f = F + 3 * r;
+        P[3 * r] = f[0] * S[0] + f[1] * S[3] + f[2] * S[5];
+        P[3 * r + 1] = f[0] * S[3] + f[1] * S[1] + f[2] * S[4];
+        P[3 * r + 2] = f[0] * S[5] + f[1] * S[4] + f[2] * S[2];
     }
     if (pass->volume_mode != SN_VOLUME_NONE) {
         wide p = wide_load(c->T + 6 * SN_BLOCK + i);
@@ -111,10 +126,9 @@ SN_INLINE void piola(const sn_cell_pass *pass, const cell_block *c, int i, wide 
     for (int k = 0; k < 9; k++) P[k] = -V * P[k];
 }
 
-SN_INLINE void store_forces(const sn_cell_pass *pass, size_t at, const cell_block *c) {
+SN_INLINE void find_forces(const sn_cell_pass *pass, size_t at, cell_block *c) {
     const real *gradient = (const real *)pass->gradient + 9 * at;
     const real *volume = (const real *)pass->volume + at;
-    real f[12 * SN_BLOCK];
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide P[9], g[9], first[3] = {wide_set(0), wide_set(0), wide_set(0)};
         piola(pass, c, i, wide_load(volume + i), P);
@@ -124,59 +138,44 @@ SN_INLINE void store_forces(const sn_cell_pass *pass, size_t at, const cell_bloc
                 wide x =
                     P[3 * r] * g[3 * a] + P[3 * r + 1] * g[3 * a + 1] + P[3 * r + 2] * g[3 * a + 2];
                 first[r] = first[r] - x;
-                wide_store(f + (3 * (a + 1) + r) * SN_BLOCK + i, x);
+                wide_store(c->f + (3 * (a + 1) + r) * SN_BLOCK + i, x);
             }
-        for (int r = 0; r < 3; r++) wide_store(f + r * SN_BLOCK + i, first[r]);
+        for (int r = 0; r < 3; r++) wide_store(c->f + r * SN_BLOCK + i, first[r]);
     }
-    real *force = (real *)pass->force + 16 * at;
+}
+
+// forces of the corners of a block to the nodes of the tile
+SN_INLINE void add_forces(const real *f, const uint16_t *corner, real *force) {
     for (int a = 0; a < 4; a++)
-        block_take(force + 4 * a * SN_BLOCK, f + 3 * a * SN_BLOCK, f + (3 * a + 1) * SN_BLOCK,
-                   f + (3 * a + 2) * SN_BLOCK);
+        for (int i = 0; i < SN_BLOCK; i += 4) {
+            const real *from = f + 3 * a * SN_BLOCK + i;
+            quad q[4];
+            block_take(from, from + SN_BLOCK, from + 2 * SN_BLOCK, q);
+            tile_add(force, corner + a * SN_BLOCK + i, q);
+        }
 }
 
-// mean pressure of the four volume points
-SN_INLINE void nodal_pressure(const sn_cell_pass *pass, size_t at, cell_block *c) {
-    const int *point = pass->point + 4 * at;
-    const real *p = pass->pressure;
-    const real quarter = (real)0.25;
-    for (int i = 0; i < SN_BLOCK; i++)
-        c->T[6 * SN_BLOCK + i] =
-            quarter * ((p[point[i]] + p[point[SN_BLOCK + i]]) +
-                       (p[point[2 * SN_BLOCK + i]] + p[point[3 * SN_BLOCK + i]]));
-}
-
-void SN_KERNEL(sn_cells)(const sn_cell_pass *pass) {
+void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
+    tile_nodes nodes;
     cell_block c;
+    const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
     const int components = pass->volume_mode == SN_VOLUME_CELL ? 7 : 6;
-    for (int b = 0; b < pass->blocks; b++) {
-        const size_t at = (size_t)b * SN_BLOCK;
-        displacement_gradient(pass, at, &c);
-        if (pass->law) {
-            strain(pass, &c);
+    tile_load(tile, pass->u, nodal ? pass->pressure : NULL, &nodes);
+    memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
+    for (int b = 0; b < tile->blocks; b++) {
+        const int block = tile->block + b;
+        const size_t at = (size_t)block * SN_BLOCK;
+        const uint16_t *corner = tile->corner + 4 * b * SN_BLOCK;
+        block_ask_memory(&pass->memory, block - pass->first, components * SN_BLOCK);
+        displacement_gradient(pass, &nodes, corner, at, &c);
+        strain(pass, &c);
 #if SN_REAL_BITS == 64
-            sn_law_solid(pass->law, pass->value, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
+        sn_law_solid(pass->law, pass->value, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
 #else
-            sn_law_solid_f(pass->law, pass->value_f, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
+        sn_law_solid_f(pass->law, pass->value_f, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
 #endif
-            block_memory(&pass->memory, b, components * SN_BLOCK, c.T);
-        }
-        if (pass->volume_mode == SN_VOLUME_NODE) nodal_pressure(pass, at, &c);
-        store_forces(pass, at, &c);
-    }
-}
-
-void SN_KERNEL(sn_volumes)(const sn_cell_pass *pass) {
-    cell_block c;
-    const real quarter = (real)0.25;
-    for (int b = 0; b < pass->blocks; b++) {
-        const size_t at = (size_t)b * SN_BLOCK;
-        const real *volume = (const real *)pass->volume + at;
-        displacement_gradient(pass, at, &c);
-        for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
-            wide H[9], M[9];
-            load9(c.H, i, H);
-            to_axes(pass, H, M);
-            wide_store((real *)pass->growth + at + i, quarter * wide_load(volume + i) * growth(M));
-        }
+        block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
+        find_forces(pass, at, &c);
+        add_forces(c.f, corner, tile->force);
     }
 }

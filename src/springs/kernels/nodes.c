@@ -2,52 +2,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "springs/kernels/block.h"
 
-void SN_KERNEL(sn_points)(const sn_point_pass *pass);
-void SN_KERNEL(sn_nodes)(const sn_node_pass *pass);
-void SN_KERNEL(sn_move)(sn_move_pass *pass);
+void SN_KERNEL(sn_points)(const sn_point_pass *pass, int block);
+void SN_KERNEL(sn_nodes)(const sn_node_pass *pass, int chunk);
+void SN_KERNEL(sn_move)(const sn_move_pass *pass, int chunk);
+double SN_KERNEL(sn_peak)(long turns, double *out);
 
-void SN_KERNEL(sn_points)(const sn_point_pass *pass) {
-    const real *growth = pass->growth;
-    for (int b = 0; b < pass->blocks; b++) {
-        const size_t at = (size_t)b * SN_BLOCK;
-        real *p = (real *)pass->pressure + at;
-        const real *stiffness = (const real *)pass->stiffness + at;
-        for (int i = 0; i < SN_BLOCK; i++) {
-            const int end = pass->start[at + (size_t)i + 1];
-            int k = pass->start[at + (size_t)i];
-            quad sum = {0, 0, 0, 0}; // four sums do not wait for each other
-            for (; k + 4 <= end; k += 4) {
-                const int *item = pass->item + k;
-                sum += (quad){growth[item[0]], growth[item[1]], growth[item[2]], growth[item[3]]};
-            }
-            for (; k < end; k++) sum[0] += growth[pass->item[k]];
-            p[i] = stiffness[i] * ((sum[0] + sum[1]) + (sum[2] + sum[3]));
-        }
-        block_memory(&pass->memory, b, SN_BLOCK, p);
+void SN_KERNEL(sn_points)(const sn_point_pass *pass, int block) {
+    const size_t at = (size_t)block * SN_BLOCK;
+    const real *growth = pass->growth, *stiffness = (const real *)pass->stiffness + at;
+    real *p = (real *)pass->pressure + at;
+    for (size_t i = 0; i < SN_BLOCK; i++) {
+        real sum = 0;
+        for (int k = pass->start[at + i]; k < pass->start[at + i + 1]; k++)
+            sum += growth[pass->item[k]];
+        p[i] = stiffness[i] * sum;
     }
+    block_memory(&pass->memory, block - pass->first, SN_BLOCK, p);
 }
 
-// sum of the quads from[item[first]] … from[item[end - 1]], two at a time
-SN_INLINE quad gather_sum(const real *from, const int *item, int first, int end) {
-    quad even = {0, 0, 0, 0}, odd = {0, 0, 0, 0};
-    int k = first;
-    for (; k + 2 <= end; k += 2) {
-        even += quad_load(from + 4 * (size_t)item[k]);
-        odd += quad_load(from + 4 * (size_t)item[k + 1]);
-    }
-    if (k < end) even += quad_load(from + 4 * (size_t)item[k]);
-    return even + odd;
-}
-
-void SN_KERNEL(sn_nodes)(const sn_node_pass *pass) {
-    const real *weight = pass->weight;
+void SN_KERNEL(sn_nodes)(const sn_node_pass *pass, int chunk) {
+    const real *weight = pass->weight, *part = pass->part;
     real *force = pass->force;
-    for (int i = 0; i < pass->nodes; i++) {
-        const int *start = pass->start + 3 * (size_t)i;
+    const int first = chunk * SN_NODE_CHUNK, last = first + SN_NODE_CHUNK;
+    for (int i = first; i < last && i < pass->nodes; i++) {
+        const int *start = pass->start + i;
         quad sum = quad_load(weight + 4 * (size_t)i);
-        sum += gather_sum(pass->spring_force, pass->item, start[0], start[1]);
-        sum -= gather_sum(pass->spring_force, pass->item, start[1], start[2]);
-        sum += gather_sum(pass->cell_force, pass->item, start[2], start[3]);
+        for (int k = start[0]; k < start[1]; k++)
+            sum += quad_load(part + 4 * (size_t)pass->item[k]);
         quad_store(force + 4 * (size_t)i, sum);
     }
 }
@@ -63,12 +44,13 @@ SN_INLINE quad quad_max(quad a, quad b) {
     return (quad)((more & (quad_int)a) | (~more & (quad_int)b));
 }
 
-void SN_KERNEL(sn_move)(sn_move_pass *pass) {
+void SN_KERNEL(sn_move)(const sn_move_pass *pass, int chunk) {
     const real h = (real)pass->step, kick = (real)pass->kick;
     const real *force = pass->force, *inverse_mass = pass->inverse_mass;
     real *u = pass->u, *v = pass->v;
     quad sum = {0, 0, 0, 0}, most = {0, 0, 0, 0};
-    for (int i = 0; i < pass->nodes; i++) {
+    const int first = chunk * SN_NODE_CHUNK, last = first + SN_NODE_CHUNK;
+    for (int i = first; i < last && i < pass->nodes; i++) {
         const size_t at = 4 * (size_t)i;
         quad w = quad_load(v + at);
         w += kick * (quad_load(force + at) * quad_load(inverse_mass + at));
@@ -78,8 +60,24 @@ void SN_KERNEL(sn_move)(sn_move_pass *pass) {
         quad_store(v + at, w);
         quad_store(u + at, quad_load(u + at) + h * w);
     }
-    pass->sum = (double)((sum[0] + sum[1]) + (sum[2] + sum[3]));
+    pass->sum[chunk] = (double)((sum[0] + sum[1]) + (sum[2] + sum[3]));
     double largest = 0;
     for (int k = 0; k < 3; k++) largest = (double)most[k] > largest ? (double)most[k] : largest;
-    pass->fastest = sqrt(3 * largest);
+    pass->fastest[chunk] = largest;
+}
+
+// chains that do not wait for each other; nothing in it can be left out
+double SN_KERNEL(sn_peak)(long turns, double *out) {
+    enum { CHAINS = 12 };
+    wide x[CHAINS];
+    const wide a = wide_set((real)(1 - 1e-3)), b = wide_set((real)1e-3);
+    for (int k = 0; k < CHAINS; k++) x[k] = wide_set((real)k);
+    for (long n = 0; n < turns; n++)
+        for (int k = 0; k < CHAINS; k++) x[k] = x[k] * a + b;
+    wide sum = x[0];
+    for (int k = 1; k < CHAINS; k++) sum = sum + x[k];
+    real all[SN_LANES];
+    wide_store(all, sum);
+    *out = (double)all[0];
+    return 2.0 * CHAINS * SN_LANES * (double)turns;
 }

@@ -11,53 +11,89 @@
 // and the force on end 0 is k t_visc / lambda (D + d).
 #include "springs/kernels/block.h"
 
-void SN_KERNEL(sn_springs)(const sn_spring_pass *pass);
+void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile);
+
+enum { STARS = SN_BLOCK / SN_STAR };
 
 typedef struct spring_block {
-    real d[3 * SN_BLOCK]; // difference of displacements, then the force
+    real d[3 * SN_BLOCK]; // difference of displacements
+    real D[3 * SN_BLOCK]; // of rest positions
     real t[SN_BLOCK];
     real over[SN_BLOCK]; // 1 / lambda
 } spring_block;
 
-SN_INLINE void tension(const sn_spring_pass *pass, const real *D, const real *inverse,
-                       spring_block *s) {
+SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
     const real B = (real)pass->exponent, third = (real)(1.0 / 3.0);
+    const bool curved = fabs(pass->exponent) > 1e-20;
+    const real over_B = (real)(curved ? 1.0 / pass->exponent : 0.0);
     const real least = (real)1e-6; // of lambda^2: a spring turned to a point stays finite
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide dx = wide_load(s->d + i), dy = wide_load(s->d + SN_BLOCK + i);
         wide dz = wide_load(s->d + 2 * SN_BLOCK + i);
-        wide Dx = wide_load(D + i), Dy = wide_load(D + SN_BLOCK + i);
-        wide Dz = wide_load(D + 2 * SN_BLOCK + i);
-        wide e = ((Dx + Dx + dx) * dx + (Dy + Dy + dy) * dy + (Dz + Dz + dz) * dz) *
-                 wide_load(inverse + i);
+        wide Dx = wide_load(s->D + i), Dy = wide_load(s->D + SN_BLOCK + i);
+        wide Dz = wide_load(s->D + 2 * SN_BLOCK + i);
+        wide e = ((Dx + Dx + dx) * dx + (Dy + Dy + dy) * dy + (Dz + Dz + dz) * dz) /
+                 (Dx * Dx + Dy * Dy + Dz * Dz);
         e = wide_max(e, wide_set(least - 1));
         wide lambda = wide_sqrt(1 + e);
-        wide over = 1 / lambda;
-        wide x = e / (1 + lambda);
-        wide pull = wide_phi1(B * wide_max(x, wide_set(0))) * x;
+        wide one = 1 + lambda, inverse = 1 / (lambda * one); // of both divisions
+        wide over = one * inverse, x = e * lambda * inverse;
+        wide stretched = wide_max(x, wide_set(0));
+        wide pull = curved ? wide_expm1(B * stretched) * over_B : stretched;
         wide push = x * (1 + x * (1 + third * x)) * (over * over);
         wide_store(s->t + i, wide_select(wide_less(x, wide_set(0)), push, pull));
         wide_store(s->over + i, over);
     }
 }
 
-void SN_KERNEL(sn_springs)(const sn_spring_pass *pass) {
-    spring_block s;
-    for (int b = 0; b < pass->blocks; b++) {
-        const size_t at = (size_t)b * SN_BLOCK;
-        const int *end = pass->end + 2 * at;
-        const real *D = (const real *)pass->edge + 3 * at;
-        const real *stiffness = (const real *)pass->stiffness + at;
-        block_difference(pass->u, end, end + SN_BLOCK, s.d);
-        tension(pass, D, (const real *)pass->inverse + at, &s);
-        block_memory(&pass->memory, b, SN_BLOCK, s.t);
-        for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
-            wide f = wide_load(stiffness + i) * wide_load(s.t + i) * wide_load(s.over + i);
-            for (int c = 0; c < 3; c++) {
-                int at_c = c * SN_BLOCK + i;
-                wide_store(s.d + at_c, f * (wide_load(D + at_c) + wide_load(s.d + at_c)));
-            }
+SN_INLINE void take(const real *rows, const uint16_t *corner, bool away, real *force) {
+    for (int i = 0; i < STARS; i += 4) {
+        quad q[4];
+        block_take(rows + i, rows + SN_BLOCK + i, rows + 2 * SN_BLOCK + i, q);
+        if (away)
+            tile_subtract(force, corner + i, q);
+        else
+            tile_add(force, corner + i, q);
+    }
+}
+
+// forces of a block on the nodes of the tile
+SN_INLINE void pull(const real *stiffness, const uint16_t *corner, spring_block *s, real *force) {
+    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
+        wide f = wide_load(stiffness + i) * wide_load(s->t + i) * wide_load(s->over + i);
+        for (int c = 0; c < 3; c++) {
+            int at = c * SN_BLOCK + i;
+            wide_store(s->d + at, f * (wide_load(s->D + at) + wide_load(s->d + at)));
         }
-        block_take((real *)pass->force + 4 * at, s.d, s.d + SN_BLOCK, s.d + 2 * SN_BLOCK);
+    }
+    for (int c = 0; c < 3; c++)
+        for (int i = 0; i < STARS; i += SN_LANES) {
+            wide sum = wide_load(s->d + c * SN_BLOCK + i);
+            for (int n = 1; n < SN_STAR; n++)
+                sum = sum + wide_load(s->d + c * SN_BLOCK + n * STARS + i);
+            wide_store(s->D + c * SN_BLOCK + i, sum); // no longer needed
+        }
+    take(s->D, corner, false, force);
+    for (int n = 0; n < SN_STAR; n++) take(s->d + n * STARS, corner + (1 + n) * STARS, true, force);
+}
+
+void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile) {
+    const block_layout layout = {.width = STARS, .component = SN_BLOCK, .spoke = STARS};
+    tile_nodes nodes;
+    spring_block s;
+    tile_load(tile, pass->u, NULL, &nodes);
+    memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
+    for (int b = 0; b < tile->blocks; b++) {
+        const uint16_t *corner = tile->corner + (1 + SN_STAR) * STARS * b;
+        const int block = tile->block + b;
+        if (b + 1 < tile->blocks) {
+            block_ask_memory(&pass->memory, block + 1 - pass->first, SN_BLOCK);
+            block_ask((const real *)pass->stiffness + (size_t)(block + 1) * SN_BLOCK,
+                      SN_BLOCK * sizeof(real));
+        }
+        block_spokes(&nodes, corner, SN_STAR, layout, s.d, s.D, NULL);
+        tension(pass, &s);
+        block_memory(&pass->memory, block - pass->first, SN_BLOCK, s.t);
+        pull((const real *)pass->stiffness + (size_t)block * SN_BLOCK, corner, &s, tile->force);
     }
 }
