@@ -59,6 +59,28 @@ machine --protocol dynamic --points 3 >test-5.json
 for method in tensile cyclic relaxation creep; do
     "$SINEW" analyze $method.csv --test $method --json >analyze-$method-1.json
 done
+# what only some records show: no toe, no recovery, remarks, raw sinusoids, two directions
+awk 'BEGIN { print "time [s],stretch [1],stress [kPa]"
+    for (i = 0; i < 60; i++) printf "%g,%g,%g\n", i - (i == 30) * 1.5, 1 + 0.002 * i, 0.1 * i }' >straight.csv
+"$SINEW" analyze straight.csv --test tensile --json >analyze-tensile-2.json
+machine --protocol cyclic --ramp "1 s" --cycles 1 --out once.csv >/dev/null
+"$SINEW" analyze once.csv --test cyclic --json >analyze-cyclic-2.json
+# a row twice is remarked; a creep test that ends under its load
+for method in cyclic relaxation; do
+    awk '1; NR == 40' $method.csv >twice.csv
+    "$SINEW" analyze twice.csv --test $method --json >analyze-$method-3.json
+done
+awk 'NR <= 70; NR == 40' creep.csv >twice.csv
+"$SINEW" analyze twice.csv --test creep --json >analyze-creep-2.json
+awk 'BEGIN { print "time [s],stretch [1],stress [kPa]"
+    for (i = 0; i < 400; i++) { x = i * 0.02 * 6.2831853; printf "%g,%.8f,%.8f\n", i * 0.02, 1.1 + 0.01 * sin(x), 2 + 0.3 * sin(x + 0.2) } }' >raw.csv
+"$SINEW" analyze raw.csv --test dynamic --json >analyze-dynamic-1.json
+awk 'BEGIN { print "frequency [Hz],storage_modulus [kPa],loss_modulus [kPa]"
+    for (f = 0.1; f < 200; f *= 3) print f "," 1 + f / (1 + f) "," f / (1 + f * f) }' >sweep.csv
+"$SINEW" analyze sweep.csv --test dynamic --json >analyze-dynamic-2.json
+"$SINEW" analyze "$SOURCE/data/pericardium/protocol-1-1.csv" --test biaxial --json >analyze-biaxial-1.json
+"$SINEW" fit "$SOURCE"/data/pericardium/protocol-*.csv --elastic fung-planar --json >fit-3.json
+"$SINEW" fit relaxation.csv tensile.csv --elastic exponential --memory prony --terms auto:2 --bootstrap 40 --json >fit-4.json
 "$SINEW" fit relaxation.csv tensile.csv --elastic exponential --memory prony --terms 2 --hold-out --json >fit-1.json
 # one direction does not determine two constants
 "$SINEW" fit tensile.csv --elastic mooney-rivlin --json >fit-2.json
