@@ -314,11 +314,13 @@ void sn_net_loads(const sn_net *net, double t, sn_precision precision, const voi
     }
 }
 
-void sn_net_contact(const sn_net *net, const sn_contact_call *call) {
+double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
+    const double margin = net->edge;
+    double omega2 = 0.0;
     for (int t = 0; t < net->tool_count; t++) {
         const sn_pose *pose = &call->pose[t];
-        const double reach = sn_tool_reach(&net->tool[t]);
-        double *sum = call->tool_force[t];
+        const double near = sn_tool_reach(&net->tool[t]) + margin;
+        double *sum = call->tool_force[t], stiffest = 0.0;
         sum[0] = sum[1] = sum[2] = 0.0;
         for (int k = 0; k < net->contact_count; k++) {
             const int node = net->contact_node[k];
@@ -326,21 +328,25 @@ void sn_net_contact(const sn_net *net, const sn_contact_call *call) {
             double x[3], force[3], tangent[9], r2 = 0.0;
             position(net, call->precision, call->u, node, x);
             for (int d = 0; d < 3; d++) r2 += (x[d] - pose->centre[d]) * (x[d] - pose->centre[d]);
-            if (r2 >= reach * reach) {
+            if (r2 >= near * near) {
                 call->after[at] = (sn_contact){0};
                 continue;
             }
-            if (!sn_tool_contact(&net->tool[t], pose, x, net->contact_stiffness[k],
-                                 &call->before[at], &call->after[at], force,
-                                 call->tangent ? tangent : NULL))
-                continue;
+            const bool touches = sn_tool_contact(&net->tool[t], pose, x, net->contact_stiffness[k],
+                                                 &call->before[at], &call->after[at], force,
+                                                 call->tangent ? tangent : NULL);
+            if (touches || sn_tool_depth(&net->tool[t], pose, x, NULL) > -margin)
+                stiffest = fmax(stiffest, net->contact_stiffness[k] / net->mass[node]);
+            if (!touches) continue;
             for (int d = 0; d < 3; d++) {
                 call->ext[3 * node + d] += force[d];
                 sum[d] -= force[d]; // of the tissue on the tool
             }
             if (call->tangent) call->tangent(call->context, node, tangent);
         }
+        omega2 += stiffest;
     }
+    return omega2;
 }
 
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose) {

@@ -18,8 +18,8 @@ static double dot(const double *a, const double *b, size_t n) {
     return sum;
 }
 
-static void evaluate(const sn_net *net, const sn_frequency_call *call, const double *u) {
-    sn_force_call force = {.precision = SN_DOUBLE,
+static void evaluate(const sn_net *net, const sn_frequency_call *call, const void *u) {
+    sn_force_call force = {.precision = call->precision,
                            .mode = SN_MEMORY_OFF,
                            .u = u,
                            .out = call->scratch,
@@ -27,23 +27,55 @@ static void evaluate(const sn_net *net, const sn_frequency_call *call, const dou
     sn_net_forces(net, &force);
 }
 
-// out <- A y; `base` holds the force at u
+// trial <- u + tiny M^-1/2 y
+static void place_trial(const sn_net *net, const sn_frequency_call *call, double tiny,
+                        const double *y) {
+    const double *root = net->root_inverse_mass;
+    if (call->precision == SN_SINGLE) {
+        const float *u = call->u;
+        float *trial = call->trial;
+        for (int i = 0; i < net->nodes; i++)
+            for (int d = 0; d < 3; d++)
+                trial[4 * i + d] = u[4 * i + d] + (float)(tiny * y[3 * i + d] * root[3 * i + d]);
+    } else {
+        const double *u = call->u;
+        double *trial = call->trial;
+        for (int i = 0; i < net->nodes; i++)
+            for (int d = 0; d < 3; d++)
+                trial[4 * i + d] = u[4 * i + d] + tiny * y[3 * i + d] * root[3 * i + d];
+    }
+}
+
+// out <- factor M^-1/2 (base - f)
+static void take_force(const sn_net *net, const sn_frequency_call *call, double factor,
+                       const double *base, double *out) {
+    const double *root = net->root_inverse_mass;
+    if (call->precision == SN_SINGLE) {
+        const float *f = call->scratch->f;
+        for (int i = 0; i < net->nodes; i++)
+            for (int d = 0; d < 3; d++)
+                out[3 * i + d] =
+                    factor * root[3 * i + d] * (base[3 * i + d] - (double)f[4 * i + d]);
+    } else {
+        const double *f = call->scratch->f;
+        for (int i = 0; i < net->nodes; i++)
+            for (int d = 0; d < 3; d++)
+                out[3 * i + d] = factor * root[3 * i + d] * (base[3 * i + d] - f[4 * i + d]);
+    }
+}
+
+// out <- A y; `base` holds the force at u. The largest difference of a displacement, of an edge, is
+// the root of the rounding in either precision, or more: what it leaves is far below the safety of
+// the step.
 static void apply(const sn_net *net, const sn_frequency_call *call, const double *base,
                   const double *y, double *out) {
-    const double *inverse = net->data[SN_DOUBLE].inverse_mass;
     double most = 0.0;
     for (int k = 0; k < 3 * net->nodes; k++)
-        most = fmax(most, fabs(y[k]) * sqrt(inverse[4 * (k / 3) + k % 3]));
-    const double tiny = 1e-6 * net->edge / most;
-    for (int i = 0; i < net->nodes; i++)
-        for (int d = 0; d < 3; d++)
-            call->trial[4 * i + d] =
-                call->u[4 * i + d] + tiny * y[3 * i + d] * sqrt(inverse[4 * i + d]);
+        most = fmax(most, fabs(y[k]) * net->root_inverse_mass[k]);
+    const double tiny = (call->precision == SN_SINGLE ? 1e-3 : 1e-6) * net->edge / most;
+    place_trial(net, call, tiny, y);
     evaluate(net, call, call->trial);
-    const double *f = call->scratch->f;
-    for (int i = 0; i < net->nodes; i++)
-        for (int d = 0; d < 3; d++)
-            out[3 * i + d] = (base[3 * i + d] - f[4 * i + d]) * sqrt(inverse[4 * i + d]) / tiny;
+    take_force(net, call, 1.0 / tiny, base, out);
 }
 
 // largest eigenvalue of a small symmetric tridiagonal matrix and its vector, by power iteration
@@ -69,15 +101,14 @@ static double small_eigenvalue(const double *diagonal, const double *beside, int
 
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
     const size_t n = (size_t)net->nodes * 3;
-    const double *inverse = net->data[SN_DOUBLE].inverse_mass;
     double diagonal[SN_LANCZOS_MAX], beside[SN_LANCZOS_MAX], x[SN_LANCZOS_MAX];
-    double *base = call->basis + (size_t)SN_LANCZOS_MAX * n;
+    double *base = call->basis + (size_t)call->steps * n;
     int steps = 0;
 
     evaluate(net, call, call->u);
     for (size_t k = 0; k < n; k++) {
-        base[k] = ((const double *)call->scratch->f)[4 * (k / 3) + k % 3];
-        call->basis[k] = inverse[4 * (k / 3) + k % 3] > 0 ? call->mode[k] : 0.0;
+        base[k] = sn_real_at(call->precision, call->scratch->f, 4 * (k / 3) + k % 3);
+        call->basis[k] = net->root_inverse_mass[k] > 0 ? call->mode[k] : 0.0;
     }
     double norm = sqrt(dot(call->basis, call->basis, n));
     if (!(norm > 0) || !isfinite(norm)) return 0.0;
@@ -85,7 +116,7 @@ double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
     while (steps < call->steps) {
         const double *q = call->basis + (size_t)steps * n;
         double *next = call->basis + (size_t)(steps + 1) * n;
-        double *w = steps + 1 < SN_LANCZOS_MAX ? next : call->mode;
+        double *w = steps + 1 < call->steps ? next : call->mode;
         apply(net, call, base, q, w);
         diagonal[steps] = dot(q, w, n);
         for (int j = 0; j <= steps; j++) { // against all: rounding would bring copies back
@@ -143,14 +174,11 @@ sn_status sn_net_find_step(sn_net *net) {
     net->mode = sn_alloc(nodes * 3, sizeof *net->mode);
     sn_status status = sn_scratch_create(net, SN_DOUBLE, &scratch);
     if (!u || !trial || !net->mode || !basis) status = SN_E_MEMORY;
-    for (int k = 0; k < net->contact_count; k++)
-        net->contact_omega2 =
-            fmax(net->contact_omega2, net->contact_stiffness[k] / net->mass[net->contact_node[k]]);
     if (status == SN_OK) {
-        const sn_frequency_call call = {u, trial, net->mode, basis, SN_LANCZOS_MAX, &scratch, NULL};
+        const sn_frequency_call call = {SN_DOUBLE,      u,        trial, net->mode, basis,
+                                        SN_LANCZOS_MAX, &scratch, NULL};
         net->omega2 = search(net, &call);
-        double longest =
-            SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2 + net->contact_omega2);
+        double longest = SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2);
         net->step = fmin(longest, net->output_every); // nothing free to move has no limit
         if (net->asked_step > 0) net->step = fmin(net->asked_step, net->step);
     }

@@ -136,12 +136,17 @@ static double mean_edge(const sn_net *net) {
     return cbrt(6.0 * volume / net->cells); // of a cell of a cube
 }
 
-static void set_inverse_masses(sn_net *net) {
+static sn_status set_inverse_masses(sn_net *net) {
     double *inverse = net->data[SN_DOUBLE].inverse_mass;
+    net->root_inverse_mass = sn_alloc((size_t)net->nodes * 3, sizeof *net->root_inverse_mass);
+    if (!net->root_inverse_mass) return SN_E_MEMORY;
     for (int i = 0; i < net->nodes; i++)
-        for (int d = 0; d < 3; d++)
-            inverse[4 * i + d] =
-                (net->fixed_bits[i] >> d & 1) || !(net->mass[i] > 0) ? 0.0 : 1.0 / net->mass[i];
+        for (int d = 0; d < 3; d++) {
+            bool free = !(net->fixed_bits[i] >> d & 1) && net->mass[i] > 0;
+            inverse[4 * i + d] = free ? 1.0 / net->mass[i] : 0.0;
+            net->root_inverse_mass[3 * i + d] = sqrt(inverse[4 * i + d]);
+        }
+    return SN_OK;
 }
 
 static void place_stores(sn_net *net) {
@@ -302,7 +307,7 @@ static sn_status build(const sn_case *c, sn_net *net) {
     SN_TRY(list_shares(net));
     SN_TRY(set_masses(c, net));
     SN_TRY(sn_net_build_drive(c, net));
-    set_inverse_masses(net);
+    SN_TRY(set_inverse_masses(net));
     net->edge = mean_edge(net);
     // the step must be known before the memory, the viscous part before the step
     for (int r = 0; r < net->region_count; r++)
@@ -376,7 +381,7 @@ void sn_net_destroy(sn_net *n) {
                    n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
                    n->spring_volume, n->point_start, n->point_item,         n->point_node,
                    n->point_volume,  n->node_start,  n->node_item,          n->node_position,
-                   n->mass,          n->mode};
+                   n->mass,          n->mode,        n->root_inverse_mass};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(n);
 }

@@ -113,10 +113,9 @@ struct sn_net {
     double until, output_every;
     double asked_step; ///< of the case; 0: chosen
     double step;       ///< explicit
-    double omega2;     ///< highest eigenvalue of M^-1 K at rest, 1/s2, with contact
-    double contact_omega2;
-    double *mode; ///< of omega2, in mass-scaled displacements      (nodes x 3)
-    double edge;  ///< mean length of a cell's edges, m
+    double omega2;     ///< highest eigenvalue of M^-1 K at rest, 1/s2
+    double *mode;      ///< of omega2, in mass-scaled displacements      (nodes x 3)
+    double edge;       ///< mean length of a cell's edges, m
     char note[SN_TEXT_MAX];
 
     int region_count;
@@ -139,6 +138,7 @@ struct sn_net {
     int *node_name;              ///< number in the mesh of each node (nodes)
     double *node_position;       ///<                         (nodes x 3)
     double *mass;                ///<                               (nodes)
+    double *root_inverse_mass;   ///< of free directions, else 0   (nodes x 3)
     double gravity[3];
     double axes[9];
     bool rotated;
@@ -198,11 +198,12 @@ struct sn_state {
     sn_pose *tool_pose;                ///< where sn_state_set_tool() put it
     bool *tool_set;
     double (*tool_force)[3];
-    // the search for the highest frequency, always double
-    double *probe_u, *probe_trial; ///< quads
+    // the search for the highest frequency
+    void *probe_trial; ///< quads
     double *mode, *basis;
     sn_scratch probe;
     double omega2, seen_omega2; ///< until the next look, at the last look
+    double contact_omega2;      ///< what tools add at most; 0: none is near
     long steps;
     int check_in, check_every; ///< steps until omega2 is looked at again
     double moved, check_way;   ///< most that a node can have moved since, may move, m
@@ -299,7 +300,10 @@ typedef struct sn_contact_call {
     sn_tangent_sink *tangent;
     void *context;
 } sn_contact_call;
-void sn_net_contact(const sn_net *net, const sn_contact_call *call);
+/// @return a bound on what contact adds to the highest eigenvalue of M^-1 K, 1/s2: the largest
+/// stiffness over mass of the nodes that a tool touches or nearly does (an edge away: a step that
+/// shrank only on touching would throw off what came too deep), summed over the tools.
+double sn_net_contact(const sn_net *net, const sn_contact_call *call);
 /// Where a tool is at time t.
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose);
 
@@ -309,17 +313,18 @@ void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double
 /// displacement u, by Lanczos' method from the vector in `mode`, which gets the approximate
 /// eigenvector.
 typedef struct sn_frequency_call {
-    const double *u; ///< quads
-    double *trial;   ///< quads, scratch
-    double *mode;    ///< mass-scaled displacements           (nodes x 3)
-    double *basis;   ///< scratch                             (SN_LANCZOS_MAX + 1 vectors)
-    int steps;       ///< at most SN_LANCZOS_MAX
-    sn_scratch *scratch;
-    sn_team *team; ///< Nullable: alone
+    sn_precision precision; ///< of the forces; the vectors of the search are double
+    const void *u;          ///< quads
+    void *trial;            ///< quads, scratch
+    double *mode;           ///< mass-scaled displacements    (nodes x 3)
+    double *basis;          ///< scratch                      (steps + 1 vectors)
+    int steps;              ///< at most SN_LANCZOS_MAX
+    sn_scratch *scratch;    ///< in that precision
+    sn_team *team;          ///< Nullable: alone
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 #define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
-#define SN_LANCZOS_WARM 3 ///< steps while running
+#define SN_LANCZOS_WARM 2 ///< steps while running
 /// The explicit step and the mode of the highest frequency of a net at rest.
 sn_status sn_net_find_step(sn_net *net);
 /// Longest stable step for a highest eigenvalue, without safety.

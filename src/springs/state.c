@@ -57,15 +57,14 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->tool_pose = sn_alloc(tools, sizeof *s->tool_pose);
     s->tool_set = sn_alloc(tools, sizeof *s->tool_set);
     s->tool_force = sn_alloc(tools, sizeof *s->tool_force);
-    s->probe_u = sn_alloc(steps ? nodes * 4 : 0, sizeof *s->probe_u);
-    s->probe_trial = sn_alloc(steps ? nodes * 4 : 0, sizeof *s->probe_trial);
+    s->probe_trial = sn_alloc(steps ? nodes * 4 : 0, size);
     s->mode = sn_alloc(nodes * 3, sizeof *s->mode);
-    s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_MAX + 1) : 0, sizeof *s->basis);
+    s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_WARM + 1) : 0, sizeof *s->basis);
     bool all = s->u && s->v && s->f_before && s->store && s->factors && s->a_fixed && s->ext &&
-               s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_u &&
-               s->probe_trial && s->mode && s->basis && s->chunk_sum && s->chunk_fastest;
+               s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_trial &&
+               s->mode && s->basis && s->chunk_sum && s->chunk_fastest;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
-        (steps && sn_scratch_create(net, SN_DOUBLE, &s->probe) != SN_OK)) {
+        (steps && sn_scratch_create(net, net->precision, &s->probe) != SN_OK)) {
         sn_state_destroy(s);
         return SN_E_MEMORY;
     }
@@ -84,10 +83,10 @@ void sn_state_destroy(sn_state *s) {
     sn_team_destroy(s->team);
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
-    void *all[] = {s->chunk_sum, s->chunk_fastest, s->u,       s->v,       s->f_before,
-                   s->store,     s->factors,       s->a_fixed, s->ext,     s->contact,
-                   s->tool_set,  s->tool_pose,     s->mode,    s->probe_u, s->probe_trial,
-                   s->basis,     s->tool_force};
+    void *all[] = {s->chunk_sum, s->chunk_fastest, s->u,        s->v,
+                   s->f_before,  s->store,         s->factors,  s->a_fixed,
+                   s->ext,       s->contact,       s->tool_set, s->tool_pose,
+                   s->mode,      s->probe_trial,   s->basis,    s->tool_force};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(s);
 }
@@ -114,7 +113,7 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                    .after = s->contact,
                                    .ext = s->ext,
                                    .tool_force = s->tool_force};
-    sn_net_contact(net, &touch);
+    s->contact_omega2 = sn_net_contact(net, &touch);
     for (int k = 0; k < net->loaded_count; k++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)net->loaded[k] + (size_t)d;
@@ -314,10 +313,8 @@ static void move_prescribed(const sn_net *net, sn_state *s, double h) {
 }
 
 static void look_at_frequency(const sn_net *net, sn_state *s) {
-    for (int i = 0; i < 4 * net->nodes; i++)
-        s->probe_u[i] = sn_real_at(s->precision, s->u, (size_t)i);
-    const sn_frequency_call call = {s->probe_u,      s->probe_trial, s->mode, s->basis,
-                                    SN_LANCZOS_WARM, &s->probe,      s->team};
+    const sn_frequency_call call = {s->precision,    s->u,      s->probe_trial, s->mode, s->basis,
+                                    SN_LANCZOS_WARM, &s->probe, s->team};
     double omega2 = sn_net_frequency(net, &call);
     if (isfinite(omega2) && omega2 > 0) {
         double growth = omega2 / s->seen_omega2;
@@ -336,16 +333,9 @@ static void look_at_frequency(const sn_net *net, sn_state *s) {
     s->moved = 0;
 }
 
-static bool touched(const sn_net *net, const sn_state *s) {
-    for (int t = 0; t < net->tool_count; t++)
-        for (int d = 0; d < 3; d++)
-            if (s->tool_force[t][d] != 0) return true;
-    return false;
-}
-
 sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     SN_ASSERT(net->integrator == SN_INTEGRATOR_EXPLICIT && dt > 0);
-    double limit = SN_STEP_SAFETY * sn_net_stable_step(net, s->omega2 + net->contact_omega2);
+    double limit = SN_STEP_SAFETY * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
     double h = fmin(dt, net->asked_step > 0 ? fmin(net->asked_step, limit) : limit);
     if (net->asked_step > limit) s->warnings++;
     if (h != s->factors_step) {
@@ -371,7 +361,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     find_forces(net, s, SN_MEMORY_ADVANCE);
     s->moved += h * fastest;
     s->check_in--;
-    double way = touched(net, s) ? fmin(s->check_way, way_touched * net->edge) : s->check_way;
+    double way = s->contact_omega2 > 0 ? fmin(s->check_way, way_touched * net->edge) : s->check_way;
     if (s->check_in <= 0 || (s->moved > way && s->check_every - s->check_in >= CHECK_LEAST))
         look_at_frequency(net, s);
     return (sn_step_info){s->time, h, s->warnings};
