@@ -11,13 +11,72 @@ extern "C" {
 /// Runs a case by total-Lagrangian finite elements with Newton's method (elements and steps from
 /// c->continuum). Fields: displacement [m], pressure [Pa], Green strain [1], Cauchy stress [Pa],
 /// energy density [J/m3], on the nodes and cells of c->mesh (elements with midside nodes give their
-/// corner values).
+/// corner values); velocity [m/s] in addition where the analysis is dynamic.
 /// @param history  gets the columns of sn_case_history_columns()
 /// @return SN_OK also where Newton gave up (summary->converged false, summary->reason says why;
 /// what converged before is in the history); SN_E_DEFINITION where rigid motion is free;
 /// SN_E_UNSUPPORTED; SN_E_MEMORY.
 SN_API sn_status sn_continuum_run(const sn_case *c, const sn_output *output,
                                   sn_run_summary *summary, sn_record *history);
+
+//---- going on where a run was killed -------------------------------------------------------------
+
+/// The state of a run, as bytes of this machine and this version.
+typedef struct sn_restart {
+    void *context;
+    /// Nullable: called after every output but the last; the bytes belong to the engine. An error
+    /// stops the run.
+    sn_status (*save)(void *context, const void *state, size_t bytes);
+    const void *state; ///< Nullable: a saved state to go on from
+    size_t bytes;      ///< of it
+} sn_restart;
+
+/// sn_continuum_run() that saves its state, or goes on from a saved one of the same case; steps,
+/// tolerance and times of the case may have changed. The history gets the rows from before too;
+/// frames are handed out from the state on. The answer is that of a run that was not interrupted,
+/// to the last bit where nothing was changed (one thread, one machine).
+/// @return as sn_continuum_run(); SN_E_DATA (the state is damaged, or of another case).
+SN_API sn_status sn_continuum_resume(const sn_case *c, const sn_output *output,
+                                     const sn_restart *restart, sn_run_summary *summary,
+                                     sn_record *history);
+
+//---- its own error -------------------------------------------------------------------------------
+
+#define SN_REFINE_MAX 3 ///< most meshes of a refinement
+
+/// One number of a run on all meshes, coarse to fine.
+typedef struct sn_refined {
+    char name[SN_NAME_MAX];      ///< a column of the history (its last row), or "elastic_J"
+    char unit[SN_NAME_MAX];      ///< SI
+    double value[SN_REFINE_MAX]; ///<                            (meshes)
+    double order;                ///< observed, or assumed where `observed` is false
+    bool observed;               ///< three meshes that converge towards one side
+    double extrapolated;         ///< to a mesh without end
+    double error[SN_REFINE_MAX]; ///< estimated error of each value, never negative (meshes)
+} sn_refined;
+
+typedef struct sn_refinement {
+    int meshes;                        ///< that were run to their end
+    sn_run_summary run[SN_REFINE_MAX]; ///<                     (meshes)
+    int count;                         ///< 0 where fewer than two meshes ended
+    sn_refined *quantity;              ///< sn_refinement_release() frees them (count)
+    char reason[SN_TEXT_MAX];          ///< why a finer mesh is missing; empty when none is
+} sn_refinement;
+
+/// Runs a case on its own mesh as sn_continuum_run() does, then on meshes of half the cell size
+/// (built-in shapes are built anew with twice the cells, so that curved walls get better too;
+/// other meshes are split by sn_mesh_refine()), and extrapolates displacements, reactions and the
+/// elastic energy at the end by Richardson's rule. Output, summary and history are those of the
+/// case's own mesh. Errors of the steps in time and of memory_tolerance are in none of this.
+/// Source: Roache, J. Fluids Eng. 116 (1994) 405: the error is 1.25 times the distance to the
+/// extrapolated value where three meshes show an order between 0.5 and 6; else order 2 is assumed
+/// and the factor is 3.
+/// @param meshes  2 or 3 with the case's own
+/// @return as sn_continuum_run() for the case's own mesh; SN_E_RANGE.
+SN_API sn_status sn_continuum_refine(const sn_case *c, int meshes, const sn_output *output,
+                                     sn_run_summary *summary, sn_record *history,
+                                     sn_refinement *out);
+SN_API void sn_refinement_release(sn_refinement *r);
 
 #ifdef __cplusplus
 }

@@ -90,6 +90,10 @@ typedef struct sn_vtu sn_vtu;
 SN_API sn_status sn_vtu_create(const char *folder, const char *name, const sn_mesh *mesh,
                                sn_vtu **vtu);
 SN_API sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame);
+/// Takes up a collection of an earlier run in the same folder: its frames stay listed, and new ones
+/// are numbered after them. Comes before the first sn_vtu_frame().
+/// @param time  of each frame                                 (frames)
+SN_API sn_status sn_vtu_continue(sn_vtu *vtu, int frames, const double *time);
 SN_API void sn_vtu_destroy(sn_vtu *vtu); // NULL is allowed
 
 //---- files and folders ---------------------------------------------------------------------------

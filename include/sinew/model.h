@@ -187,12 +187,18 @@ typedef struct sn_springs_def {
 } sn_springs_def;
 
 typedef enum sn_element { SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1 } sn_element;
-typedef enum sn_analysis { SN_ANALYSIS_QUASI_STATIC, SN_ANALYSIS_DYNAMIC } sn_analysis;
+typedef enum sn_analysis {
+    SN_ANALYSIS_QUASI_STATIC,
+    SN_ANALYSIS_DYNAMIC, ///< with inertia, from rest
+    SN_ANALYSIS_LINEAR   ///< small strain: the tangent at rest, one linear system
+} sn_analysis;
 
 typedef struct sn_continuum_def {
     sn_element element;
     sn_analysis analysis;
     int steps;               ///< least number of steps over the case; cut back where needed
+    double step;             ///< longest step, s; 0: until / steps
+    double rho_infinity;     ///< dynamic: spectral radius at infinite frequency, 0 to 1
     double tolerance;        ///< relative residual at which Newton stops
     double memory_tolerance; ///< largest error of the exponentials, of G(0)
 } sn_continuum_def;

@@ -43,8 +43,11 @@ static const equation equations[] = {
      "partly: Green strain (15) stands in its place, which equals it where (7) holds"},
     {8, "velocity and acceleration of a particle", "springs/explicit.c",
      "springs.explicit:bar_rings_at_its_frequency", PROVEN},
-    {9, "motion of a Hookean body, by displacement", "springs/explicit.c",
-     "springs.explicit:bar_rings_at_its_frequency", PROVEN},
+    {9, "motion of a Hookean body, by displacement",
+     "springs/explicit.c, continuum/inertia.c, continuum/linear.c",
+     "springs.explicit:bar_rings_at_its_frequency; continuum.dynamic:sudden_pull; "
+     "continuum.linear:limit",
+     PROVEN},
     {10, "Newtonian fluid, compressible", "", "", NO_FLUID},
     {11, "Newtonian fluid, incompressible", "", "", NO_FLUID},
     {12, "Navier-Stokes equations", "", "", NO_FLUID},

@@ -283,6 +283,20 @@ static const key_row runs[] = {
     {"note", "", "what else to know"},
     {"probes", "", "last row of the history"},
     {"probes.*", "m or N", "one component of a probe, reaction or tool"},
+    {"refinement", "", "with --refine: what finer meshes say"},
+    {"refinement.meshes", "", "coarse to fine, the case's own first"},
+    {"refinement.meshes[].nodes", "", "of the mesh, with midsides"},
+    {"refinement.meshes[].cells", "", "tetrahedra"},
+    {"refinement.meshes[].unknowns", "", "of its system"},
+    {"refinement.meshes[].wall_s", "s", "time it took"},
+    {"refinement.quantities", "", "last row of the history, and elastic_J"},
+    {"refinement.quantities.*", "as named", "one of them"},
+    {"refinement.quantities.*.values[]", "as named", "on every mesh"},
+    {"refinement.quantities.*.order", "1", "of convergence in the cell size"},
+    {"refinement.quantities.*.observed", "", "false: the order is assumed"},
+    {"refinement.quantities.*.extrapolated", "as named", "to a mesh without end (Richardson)"},
+    {"refinement.quantities.*.errors[]", "as named", "estimated error of each value"},
+    {"refinement.reason", "", "why a finer mesh is missing"},
 };
 
 #define MODEL(prefix)                                                                              \

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/cli.h"
+#include "cli/run.h"
 
 // the last row of the history
 static json_t *probes_json(const sn_record *history) {
@@ -29,7 +29,8 @@ static void put_cost(json_t *json, const sn_run_summary *s) {
     cli_put_integer(json, "cutbacks", s->cutbacks);
 }
 
-static json_t *summary_json(const sn_run_summary *s, const sn_record *history) {
+static json_t *summary_json(const sn_run_summary *s, const sn_record *history,
+                            const sn_refinement *refinement) {
     json_t *json = json_object();
     cli_put_text(json, "engine", s->engine);
     cli_put_text(json, "model", s->model);
@@ -50,6 +51,7 @@ static json_t *summary_json(const sn_run_summary *s, const sn_record *history) {
     cli_put_text(json, "reason", s->reason);
     cli_put_text(json, "note", s->note);
     cli_put(json, "probes", probes_json(history));
+    if (refinement->meshes) cli_put(json, "refinement", run_refinement_json(refinement));
     return json;
 }
 
@@ -59,11 +61,18 @@ typedef struct run_context {
     cli_progress progress;
     sn_vtu *vtu;
     int nodes;
+    const sn_record *history;
+    int earlier; ///< frames of the run that is resumed; -1 until they are known
+    sn_refinement refinement;
     double *displacement; ///< of the last frame                    (nodes x 3)
 } run_context;
 
 static sn_status take_frame(void *context, const sn_frame *frame) {
     run_context *r = context;
+    if (r->vtu && r->earlier < 0) { // a frame stands beside every row of the history
+        r->earlier = r->history->rows - 1;
+        SN_TRY(sn_vtu_continue(r->vtu, r->earlier, r->history->series[0].value));
+    }
     for (int k = 0; k < frame->field_count; k++)
         if (strcmp(frame->fields[k].name, "displacement") == 0)
             memcpy(r->displacement, frame->fields[k].value,
@@ -137,6 +146,7 @@ static sn_status write_report(const char *path, const sn_case *c, const sn_run_s
     snprintf(title, sizeof title, "%s (%s)", c->name, s->engine);
     SN_TRY(sn_report_create(title, &report));
     summary_table(report, s);
+    run_refinement_report(&r->refinement, report);
     if (*s->reason) sn_report_text(report, "The run ended early: %s", s->reason);
     if (*s->note) sn_report_text(report, "Note: %s", s->note);
     double *magnitude = sn_alloc((size_t)r->nodes, sizeof *magnitude);
@@ -161,14 +171,15 @@ static sn_status write_results(const char *folder, const sn_case *c, const sn_ru
                                const sn_record *history, const run_context *r) {
     char path[4096];
     SN_TRY(sn_curve_write(cli_path(path, sizeof path, folder, "history.csv"), history, true));
-    json_t *json = summary_json(s, history);
+    json_t *json = summary_json(s, history, &r->refinement);
     sn_status status = cli_write_json(folder, "summary.json", json);
     json_decref(json);
     if (status != SN_OK) return status;
     return write_report(cli_path(path, sizeof path, folder, "report.html"), c, s, history, r);
 }
 
-static void print_summary(const sn_run_summary *s, const sn_record *history, const char *folder) {
+static void print_summary(const sn_run_summary *s, const sn_record *history,
+                          const sn_refinement *refinement, const char *folder) {
     printf("%s, %s: %d nodes, %d cells, %d springs\n", s->engine, s->model, s->nodes, s->cells,
            s->springs);
     printf("  %s simulated in %s (real-time factor %.3g), %ld steps of at least %s\n",
@@ -181,19 +192,42 @@ static void print_summary(const sn_run_summary *s, const sn_record *history, con
     for (int k = 1; history->rows > 0 && k < history->series_count; k++)
         printf("  %-24s %s\n", history->series[k].name,
                cli_show(history->series[k].value[history->rows - 1], history->series[k].unit));
+    run_refinement_print(refinement);
     if (*s->note) printf("  note: %s\n", s->note);
     if (folder)
         printf("  results in %s (report.html, summary.json, history.csv, fields.pvd)\n", folder);
 }
 
-typedef sn_status engine_function(const sn_case *c, const sn_output *output,
-                                  sn_run_summary *summary, sn_record *history);
+typedef struct run_options {
+    const char *engine, *folder, *resume;
+    int refine;
+} run_options;
 
-static sn_status run_case(const char *path, engine_function *engine, const char *folder,
-                          const cli_arguments *arguments, sn_run_summary *summary) {
+// The continuum saves its state beside its results, and goes on from there with --resume.
+static sn_status run_continuum(const sn_case *c, const sn_output *output, const run_options *o,
+                               run_context *r, sn_run_summary *summary, sn_record *history) {
+    char folder[4096];
+    void *state = NULL;
+    if (o->refine) // sn_alloc'd parts of the estimate belong to the context
+        return sn_continuum_refine(c, o->refine, output, summary, history, &r->refinement);
+    sn_restart restart = {0};
+    if (o->folder) {
+        snprintf(folder, sizeof folder, "%s", o->folder);
+        restart = (sn_restart){.context = folder, .save = run_state_write};
+    }
+    if (o->resume) SN_TRY(run_state_read(o->folder, &state, &restart.bytes));
+    restart.state = state;
+    sn_status status = sn_continuum_resume(c, output, &restart, summary, history);
+    sn_free(state);
+    if (status == SN_OK && o->folder && summary->converged) run_state_remove(o->folder);
+    return status;
+}
+
+static sn_status run_case(const char *path, const run_options *o, const cli_arguments *arguments,
+                          sn_run_summary *summary) {
     sn_case *c = NULL;
     sn_record *history = NULL;
-    run_context r = {.progress = cli_progress_start(arguments)};
+    run_context r = {.progress = cli_progress_start(arguments), .earlier = o->resume ? -1 : 0};
     sn_output output = {&r, take_frame, pass_progress};
     sn_status status;
     SN_TRY_GOTO(status, sn_case_read(path, &c));
@@ -204,57 +238,79 @@ static sn_status run_case(const char *path, engine_function *engine, const char 
         status = SN_E_MEMORY;
         goto fail;
     }
-    if (folder) {
-        SN_TRY_GOTO(status, sn_folder_make(folder));
-        SN_TRY_GOTO(status, sn_vtu_create(folder, "fields", c->mesh, &r.vtu));
+    r.history = history;
+    if (o->folder) {
+        SN_TRY_GOTO(status, sn_folder_make(o->folder));
+        SN_TRY_GOTO(status, sn_vtu_create(o->folder, "fields", c->mesh, &r.vtu));
     }
-    status = engine(c, &output, summary, history);
+    if (strcmp(o->engine, "continuum") == 0)
+        status = run_continuum(c, &output, o, &r, summary, history);
+    else
+        status = sn_springs_run(c, &output, summary, history);
     cli_progress_end(&r.progress);
     if (status != SN_OK) {
         status = sn_fail_within(status, "%s", path);
         goto fail;
     }
-    if (folder) SN_TRY_GOTO(status, write_results(folder, c, summary, history, &r));
+    if (o->folder) SN_TRY_GOTO(status, write_results(o->folder, c, summary, history, &r));
     if (arguments->json)
-        cli_print_json(summary_json(summary, history));
+        cli_print_json(summary_json(summary, history, &r.refinement));
     else if (!arguments->quiet)
-        print_summary(summary, history, folder);
+        print_summary(summary, history, &r.refinement, o->folder);
 fail:
     sn_vtu_destroy(r.vtu);
+    sn_refinement_release(&r.refinement);
     sn_free(r.displacement);
     sn_record_destroy(history);
     sn_case_destroy(c);
     return status;
 }
 
+// What belongs to one engine, and what excludes each other.
+static int check_options(const run_options *o) {
+    bool springs = strcmp(o->engine, "springs") == 0;
+    if (springs && (o->refine || o->resume))
+        return cli_refuse("run: --%s is for --engine continuum", o->refine ? "refine" : "resume");
+    if (o->refine && o->resume) return cli_refuse("run: --refine and --resume exclude each other");
+    if (o->refine == 1 || o->refine > SN_REFINE_MAX)
+        return cli_refuse("--refine: found %d, expected 2 or 3 meshes", o->refine);
+    return CLI_DONE;
+}
+
 static int run(const cli_command *command, int argc, char **argv) {
     static const char *const engines[] = {"springs", "continuum"};
-    static engine_function *const functions[] = {sn_springs_run, sn_continuum_run};
-    const char *engine = NULL, *folder = NULL;
+    run_options o = {0};
     const cli_option options[] = {
-        {"engine", CLI_TEXT, "NAME", NULL, &engine, "springs or continuum"},
-        {"out", CLI_TEXT, "DIR", NULL, &folder,
+        {"engine", CLI_TEXT, "NAME", NULL, &o.engine, "springs or continuum"},
+        {"out", CLI_TEXT, "DIR", NULL, &o.folder,
          "writes report.html, summary.json, history.csv and fields.pvd there"},
+        {"refine", CLI_INTEGER, "N", NULL, &o.refine,
+         "continuum: 2 or 3 meshes of halved cells, and the error they show"},
+        {"resume", CLI_TEXT, "DIR", NULL, &o.resume,
+         "continuum: goes on where the run into DIR was killed"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 2, &arguments);
+    int code = cli_parse(command, argc, argv, options, 4, &arguments);
     if (code >= 0) return code;
     if (arguments.count != 1)
         return cli_refuse("run: expected one case file, got %d", arguments.count);
-    if (!engine) return cli_refuse("run: --engine is missing: springs or continuum");
-    for (int k = 0; k < 2; k++) {
-        if (strcmp(engine, engines[k]) != 0) continue;
-        sn_run_summary summary = {0};
-        sn_status status = run_case(arguments.item[0], functions[k], folder, &arguments, &summary);
-        if (status != SN_OK) return cli_fail(status);
-        if (summary.converged) return CLI_DONE;
-        cli_refuse("%s: %s", arguments.item[0], summary.reason);
-        return CLI_FAILED;
-    }
-    return cli_unknown("engine", engine, engines, 2);
+    if (!o.engine) return cli_refuse("run: --engine is missing: springs or continuum");
+    if (strcmp(o.engine, engines[0]) != 0 && strcmp(o.engine, engines[1]) != 0)
+        return cli_unknown("engine", o.engine, engines, 2);
+    if ((code = check_options(&o)) != CLI_DONE) return code;
+    if (o.resume && o.folder && strcmp(o.resume, o.folder) != 0)
+        return cli_refuse("run: --resume %s goes on in that folder, not in --out %s", o.resume,
+                          o.folder);
+    if (o.resume) o.folder = o.resume;
+    sn_run_summary summary = {0};
+    sn_status status = run_case(arguments.item[0], &o, &arguments, &summary);
+    if (status != SN_OK) return cli_fail(status);
+    if (summary.converged) return CLI_DONE;
+    cli_refuse("%s: %s", arguments.item[0], summary.reason);
+    return CLI_FAILED;
 }
 
-const cli_command cli_run = {"run", "CASE.yaml --engine springs|continuum [--out DIR]",
-                             "one case through the springs or the finite elements",
-                             "sinew run examples/muscle/strip-1s.yaml --engine springs --out out",
-                             run};
+const cli_command cli_run = {
+    "run", "CASE.yaml --engine springs|continuum [--out DIR] [--refine N] [--resume DIR]",
+    "one case through the springs or the finite elements",
+    "sinew run examples/muscle/strip-1s.yaml --engine springs --out out", run};

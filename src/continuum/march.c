@@ -5,7 +5,7 @@
 // brought on first, in as few instantaneous steps as it takes. Then come the steps in time. The
 // guess for a step is extrapolated from the last two states; after a corner of a history, or where
 // that fails, the tangent at the start of the step carries the prescribed increments into the body.
-#include "continuum/march.h"
+#include "continuum/state.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -28,7 +28,7 @@ sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *ou
                            sn_run_summary *summary, sn_record *history) {
     *m = (sn_fe_march){.c = c, .output = output, .summary = summary, .history = history};
     m->limit = (double)INFINITY;
-    m->told = sn_clock();
+    m->told = m->started = sn_clock();
     SN_TRY(sn_fe_schedule_create(c, remembers(c), &m->schedule));
     SN_TRY(sn_fe_problem_create(c, m->schedule.shortest, &m->problem));
     SN_TRY(sn_fe_newton_init(&m->newton, m->problem, c->continuum.tolerance));
@@ -83,6 +83,7 @@ static sn_status attempt(sn_fe_march *m, sn_fe_level level, sn_fe_outcome *out) 
 static void accept(sn_fe_march *m, sn_fe_level level, const sn_fe_outcome *out) {
     sn_fe_problem *p = m->problem;
     double work = 0.0;
+    sn_fe_problem_commit(p, m->guess, &out->balance);
     for (int d = 0; d < 3 * p->space->nodes; d++) {
         double force = p->residual[d] + p->external[d];
         work += 0.5 * (force + m->force[d]) * (m->guess[d] - m->x[d]);
@@ -94,20 +95,21 @@ static void accept(sn_fe_march *m, sn_fe_level level, const sn_fe_outcome *out) 
     m->x = m->guess;
     m->guess = free;
     m->last_step = level.step;
+    m->reached = level;
     m->rounded += out->rounded;
-    sn_fe_problem_commit(p, m->x, &out->balance);
 }
 
-static sn_status note_wall(sn_fe_march *m, double seconds, double step) {
+sn_status sn_fe_march_note(sn_fe_march *m, double wall, double length) {
     sn_run_summary *s = m->summary;
-    if ((size_t)s->steps == m->wall_room) {
+    if (m->walls == m->wall_room) {
         m->wall_room = 2 * m->wall_room + 64;
         double *more = sn_resize(m->wall, m->wall_room, sizeof *more);
         if (!more) return SN_E_MEMORY;
         m->wall = more;
     }
-    m->wall[s->steps++] = seconds;
-    s->step_s = s->step_s > 0.0 ? fmin(s->step_s, step) : step;
+    m->wall[m->walls++] = wall;
+    s->steps++;
+    s->step_s = s->step_s > 0.0 ? fmin(s->step_s, length) : length;
     return SN_OK;
 }
 
@@ -120,17 +122,30 @@ static void tell(sn_fe_march *m, double time) {
     m->output->progress(m->output->context, time / m->c->until, text);
 }
 
+// Whether forces act that a body may be unable to carry, however far it gives way.
+static bool pushed(const sn_case *c) {
+    bool any = c->gravity[0] != 0.0 || c->gravity[1] != 0.0 || c->gravity[2] != 0.0;
+    for (int k = 0; k < c->load_count; k++) any |= c->load[k].kind != SN_LOAD_DISPLACEMENT;
+    return any && c->continuum.analysis == SN_ANALYSIS_QUASI_STATIC;
+}
+
 static void give_up(sn_fe_march *m, bool start, double at, double step, const char *why) {
+    char *to = m->summary->reason;
     m->stopped = true;
     if (start)
-        snprintf(m->summary->reason, SN_TEXT_MAX,
+        snprintf(to, SN_TEXT_MAX,
                  "only %.3g of the loads that act at time 0 could be applied, further %.3g failed: "
-                 "%.120s",
+                 "%.80s",
                  at, step, why);
     else
-        snprintf(m->summary->reason, SN_TEXT_MAX,
-                 "stopped at %.6g s of %.6g s, where a step of %.3g s still failed: %.120s", at,
+        snprintf(to, SN_TEXT_MAX,
+                 "stopped at %.6g s of %.6g s, where a step of %.3g s still failed: %.80s", at,
                  m->c->until, step, why);
+    size_t used = strlen(to);
+    if (pushed(m->c))
+        snprintf(
+            to + used, SN_TEXT_MAX - used,
+            "; the load may be more than the body can carry: prescribe a displacement instead");
 }
 
 //---- many steps ---------------------------------------------------------------------------------
@@ -159,10 +174,20 @@ static sn_status walk(sn_fe_march *m, bool start, double at, double end, int sto
         m->wish *= SN_FE_GROWTH;
         m->limit *= REGROW;
         if (start) continue;
-        SN_TRY(note_wall(m, sn_clock() - clock, level.step));
+        SN_TRY(sn_fe_march_note(m, sn_clock() - clock, level.step));
         tell(m, at);
     }
     m->summary->simulated_s = start ? 0.0 : at;
+    return SN_OK;
+}
+
+// A body with inertia is at rest and undeformed at time 0: what acts then acts suddenly, and moves
+// nothing yet.
+static sn_status start_at_rest(sn_fe_march *m) {
+    sn_fe_problem *p = m->problem;
+    size_t bytes = (size_t)p->space->dofs * sizeof *m->force;
+    memcpy(m->force, p->external, bytes);
+    memset(p->residual, 0, bytes);
     return SN_OK;
 }
 
@@ -173,6 +198,7 @@ static sn_status into_start(sn_fe_march *m) {
     double moved = 0.0;
     sn_fe_problem_begin(p, (sn_fe_level){0.0, 1.0, 0.0});
     sn_fe_problem_balance(p, m->x, &balance);
+    if (p->inertia) return start_at_rest(m);
     for (int d = 0; d < 3 * p->space->nodes; d++)
         if (p->pattern->row[d] == SN_FE_PRESCRIBED) moved = fmax(moved, fabs(p->prescribed[d]));
     if (balance.reference == 0.0 && moved == 0.0) return SN_OK;
@@ -195,10 +221,26 @@ static sn_status record(sn_fe_march *m) {
     return sn_fe_measure_frame(m->measure, m->problem, m->x, m->output);
 }
 
+// The last state that converged, where it is not recorded already. Newton's last attempts have
+// changed the level and the factors of the memory: an instantaneous step of no change undoes that.
+static sn_status record_last(sn_fe_march *m) {
+    sn_fe_balance balance;
+    const sn_record *h = m->history;
+    double at = m->reached.time;
+    if (h->rows > 0 && h->series[0].value[h->rows - 1] >= at) return SN_OK;
+    sn_fe_problem_begin(m->problem, (sn_fe_level){at, m->reached.scale, 0.0});
+    sn_fe_problem_balance(m->problem, m->x, &balance);
+    if (m->problem->inertia)
+        sn_fe_inertia_reactions(m->problem->inertia, m->problem->space, m->problem->residual);
+    return record(m);
+}
+
 sn_status sn_fe_march_go(sn_fe_march *m) {
     const sn_fe_schedule *s = &m->schedule;
-    SN_TRY(into_start(m));
-    for (int k = 0; k < s->count && !m->stopped; k++) {
+    int done;
+    SN_TRY(sn_fe_state_restore(m, &done));
+    if (done < 0) SN_TRY(into_start(m));
+    for (int k = done + 1; k < s->count && !m->stopped; k++) {
         if (k > 0) SN_TRY(walk(m, false, s->stop[k - 1].time, s->stop[k].time, k));
         if (m->stopped) break;
         if (s->stop[k].output) SN_TRY(record(m));
@@ -207,6 +249,7 @@ sn_status sn_fe_march_go(sn_fe_march *m) {
             m->last_step = 0.0;
         }
         m->wish = fmin(m->wish, s->longest);
+        if (s->stop[k].output && k + 1 < s->count) SN_TRY(sn_fe_state_save(m, s->stop[k].time));
     }
-    return SN_OK;
+    return m->stopped ? record_last(m) : SN_OK;
 }

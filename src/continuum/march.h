@@ -5,30 +5,36 @@
 #include "continuum/measure.h"
 #include "continuum/newton.h"
 #include "continuum/schedule.h"
+#include "sinew/continuum.h"
 
 typedef struct sn_fe_march {
     const sn_case *c;
-    const sn_output *output; ///< Nullable
+    const sn_output *output;   ///< Nullable
+    const sn_restart *restart; ///< Nullable
     sn_run_summary *summary;
     sn_record *history;
     sn_fe_schedule schedule;
     sn_fe_problem *problem;
     sn_fe_newton newton;
     sn_fe_measure *measure;
-    double *x, *older;  ///< accepted states: the last and the one before   (dofs)
-    double *guess;      ///< the state being solved for                     (dofs)
-    double *force;      ///< internal forces of x, N                        (dofs)
-    double last_step;   ///< between `older` and x; 0 where there is nothing to extrapolate
-    double wish, limit; ///< longest next step: by the schedule, by what failed before
-    double *wall;       ///< seconds of each step
-    size_t wall_room;
-    int rounded;  ///< steps accepted at rounding level
-    double told;  ///< clock of the last progress text
-    bool stopped; ///< Newton gave up: summary->reason says why
+    double *x, *older;   ///< accepted states: the last and the one before   (dofs)
+    double *guess;       ///< the state being solved for                     (dofs)
+    double *force;       ///< internal forces of x, N                        (dofs)
+    double last_step;    ///< between `older` and x; 0 where there is nothing to extrapolate
+    sn_fe_level reached; ///< level of x
+    double wish, limit;  ///< longest next step: by the schedule, by what failed before
+    double *wall;        ///< seconds of each step
+    size_t wall_room, walls;
+    int rounded;             ///< steps accepted at rounding level
+    double told;             ///< clock of the last progress text
+    double started, elapsed; ///< clock at the start, seconds of work so far
+    bool stopped;            ///< Newton gave up: summary->reason says why
 } sn_fe_march;
 
 sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *output,
                            sn_run_summary *summary, sn_record *history);
 void sn_fe_march_free(sn_fe_march *m);
+/// Counts a step of `length` seconds that took so long.
+sn_status sn_fe_march_note(sn_fe_march *m, double wall, double length);
 /// Goes through the whole programme, or until Newton gives up.
 sn_status sn_fe_march_go(sn_fe_march *m);

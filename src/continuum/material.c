@@ -86,6 +86,7 @@ sn_status sn_fe_materials_create(const sn_case *c, const sn_fe_space *s, double 
         if (of->remembers) total += (size_t)(2 + of->series.terms) * BLOCK;
     }
     status = SN_E_MEMORY;
+    m->numbers = total;
     m->state = sn_alloc(total, sizeof *m->state);
     if (!m->state) goto fail;
     return SN_OK;

@@ -34,7 +34,8 @@ typedef struct sn_fe_materials {
     /// Of every batch: past, before, then H_1 …, each SN_FE_MEMORY x SN_FE_POINTS; no room where
     /// the batch does not remember.
     double *state;
-    size_t *at; ///< first number of a batch                           (batches)
+    size_t numbers; ///< in `state`
+    size_t *at;     ///< first number of a batch                           (batches)
 } sn_fe_materials;
 
 /// Checks the laws and reduces the memories to exponentials over [shortest, until] seconds.

@@ -68,7 +68,7 @@ static void average_cell(const sn_fe_problem *p, int batch, int at, sn_fe_measur
     m->energy[cell] = energy;
 }
 
-static void fill_fields(sn_fe_measure *m, const sn_fe_problem *p, const double *x) {
+void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *x) {
     const sn_fe_space *s = p->space;
     int width = s->batch_cells;
     sn_fe_fault fault;
@@ -92,19 +92,25 @@ static void fill_fields(sn_fe_measure *m, const sn_fe_problem *p, const double *
     }
 }
 
-sn_status sn_fe_measure_frame(sn_fe_measure *m, const sn_fe_problem *p, const double *x,
-                              const sn_output *output) {
-    if (!output || !output->frame) return SN_OK;
-    fill_fields(m, p, x);
+sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_output *output) {
     const sn_field fields[] = {
         {"displacement", "m", SN_ON_NODES, 3, m->displacement},
         {"pressure", "Pa", SN_ON_NODES, 1, m->pressure},
         {"green_strain", "1", SN_ON_CELLS, 6, m->strain},
         {"cauchy_stress", "Pa", SN_ON_CELLS, 6, m->stress},
         {"energy_density", "J/m3", SN_ON_CELLS, 1, m->energy},
+        {"velocity", "m/s", SN_ON_NODES, 3, p->inertia ? p->inertia->v : NULL}, // corners first
     };
-    const sn_frame frame = {p->level.time, (int)(sizeof fields / sizeof *fields), fields};
+    int count = (int)(sizeof fields / sizeof *fields) - (p->inertia ? 0 : 1);
+    const sn_frame frame = {p->level.time, count, fields};
     return output->frame(output->context, &frame);
+}
+
+sn_status sn_fe_measure_frame(sn_fe_measure *m, const sn_fe_problem *p, const double *x,
+                              const sn_output *output) {
+    if (!output || !output->frame) return SN_OK;
+    sn_fe_measure_fill(m, p, x);
+    return sn_fe_measure_emit(m, p, output);
 }
 
 double sn_fe_measure_energy(const sn_fe_problem *p, const double *x) {

@@ -28,7 +28,11 @@ void sn_fe_measure_destroy(sn_fe_measure *m, const sn_case *c); // NULL is allow
 /// Appends the row of the present state (the problem's last balance belongs to x).
 sn_status sn_fe_measure_row(sn_fe_measure *m, const sn_fe_problem *p, const double *x,
                             sn_record *history);
-/// Hands out the fields of the present state.
+/// Computes the fields of a state.
+void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *x);
+/// Hands out the fields as they were computed last, at the problem's time.
+sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_output *output);
+/// Computes the fields of the present state and hands them out.
 sn_status sn_fe_measure_frame(sn_fe_measure *m, const sn_fe_problem *p, const double *x,
                               const sn_output *output);
 /// Elastic energy of a state, J.

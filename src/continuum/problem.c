@@ -32,6 +32,7 @@ static void integrate_pressures(sn_fe_problem *p) {
 void sn_fe_problem_destroy(sn_fe_problem *p) {
     if (!p) return;
     sn_fe_solver_destroy(p->solver);
+    sn_fe_inertia_destroy(p->inertia);
     sn_fe_boundary_destroy(p->boundary, p->c);
     sn_fe_materials_destroy(p->materials);
     sn_fe_pattern_destroy(p->pattern);
@@ -50,9 +51,14 @@ sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem 
     SN_TRY_GOTO(status, sn_fe_space_create(c, &p->space));
     SN_TRY_GOTO(status, sn_fe_materials_create(c, p->space, shortest, &p->materials));
     SN_TRY_GOTO(status, sn_fe_boundary_create(c, p->space, &p->boundary));
-    sn_fe_rigid_find(p->space);
-    SN_TRY_GOTO(status, sn_fe_rigid_check(p->space, c, p->boundary));
+    bool dynamic = c->continuum.analysis == SN_ANALYSIS_DYNAMIC;
+    if (!dynamic) { // inertia holds what the supports leave free
+        sn_fe_rigid_find(p->space);
+        SN_TRY_GOTO(status, sn_fe_rigid_parts(p->space));
+        SN_TRY_GOTO(status, sn_fe_rigid_check(p->space, c, p->boundary));
+    }
     SN_TRY_GOTO(status, sn_fe_pattern_create(p->space, &p->pattern));
+    if (dynamic) SN_TRY_GOTO(status, sn_fe_inertia_create(c, p->space, p->pattern, &p->inertia));
     size_t dofs = (size_t)p->space->dofs;
     p->work = sn_alloc(1, sizeof *p->work);
     p->entry = sn_alloc((size_t)p->pattern->row_start[p->pattern->rows], sizeof *p->entry);
@@ -82,11 +88,12 @@ fail:
 void sn_fe_problem_begin(sn_fe_problem *p, sn_fe_level level) {
     p->level = level;
     sn_fe_materials_begin(p->materials, p->space, level.step);
+    if (p->inertia) sn_fe_inertia_begin(p->inertia, p->c, p->space, level.time, level.step);
     sn_fe_space_prescribed(p->space, p->c, level.time, p->prescribed);
     for (size_t n = 0; n < 3 * (size_t)p->space->nodes; n++) p->prescribed[n] *= level.scale;
 }
 
-static void measure(const sn_fe_problem *p, sn_fe_balance *out) {
+static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) {
     const sn_fe_space *s = p->space;
     double free = 0.0, held = 0.0, external = 0.0, flux = 0.0, scale = 0.0;
     for (int n = 0; n < 3 * s->nodes; n++) {
@@ -99,7 +106,7 @@ static void measure(const sn_fe_problem *p, sn_fe_balance *out) {
         scale += p->flux_scale[a] * p->flux_scale[a];
     }
     out->force = sqrt(free);
-    out->reference = sqrt(fmax(held, external));
+    out->reference = fmax(sqrt(fmax(held, external)), inertia);
     out->volume = scale > 0.0 ? sqrt(flux / scale) : 0.0;
     double reference = fmax(fmax(out->reference, p->reference), p->least_reference);
     out->error = fmax(out->force / reference, out->volume);
@@ -118,10 +125,12 @@ void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out
     }
     sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external, NULL);
     for (int n = 0; n < s->dofs; n++) p->residual[n] -= p->external[n];
-    measure(p, out);
+    double inertia = 0.0;
+    if (p->inertia) inertia = sn_fe_inertia_add(p->inertia, s, p->pattern, x, p->residual);
+    measure(p, inertia, out);
 }
 
-void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift) {
+void sn_fe_problem_stiffness(sn_fe_problem *p, const double *x, const double *lift) {
     const sn_fe_space *s = p->space;
     sn_fe_matrix matrix = {p->pattern, s, p->entry, lift, p->lifted};
     sn_fe_fault fault;
@@ -133,6 +142,13 @@ void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift
         (void)good;
         sn_fe_cell_tangent(s, p->materials->material + s->batch_region[b], b, p->work, &matrix);
     }
+}
+
+void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift) {
+    const sn_fe_space *s = p->space;
+    sn_fe_matrix matrix = {p->pattern, s, p->entry, lift, p->lifted};
+    sn_fe_problem_stiffness(p, x, lift);
+    if (p->inertia) sn_fe_inertia_tangent(p->inertia, p->pattern, p->entry);
     memset(p->external, 0, (size_t)s->dofs * sizeof *p->external);
     sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external,
                          &matrix);
@@ -149,5 +165,6 @@ void sn_fe_problem_commit(sn_fe_problem *p, const double *x, const sn_fe_balance
         sn_fe_materials_commit(p->materials, s, b, p->work->points.T);
     }
     sn_fe_boundary_commit(p->boundary, p->c);
+    if (p->inertia) sn_fe_inertia_commit(p->inertia, s, p->pattern, x, p->residual);
     p->reference = fmax(p->reference, balance->reference);
 }

@@ -4,6 +4,7 @@
 
 #include "continuum/boundary.h"
 #include "continuum/cell.h"
+#include "continuum/inertia.h"
 #include "continuum/rigid.h"
 #include "continuum/solver.h"
 
@@ -19,7 +20,7 @@ typedef struct sn_fe_balance {
     bool sound; ///< false: `fault` says where the state cannot be evaluated
     sn_fe_fault fault;
     double force;     ///< norm of the forces out of balance, N
-    double reference; ///< norm of the external forces or of the reactions, the larger, N
+    double reference; ///< norm of the external forces, reactions or inertia, the largest, N
     double volume;    ///< norm of the pressure equations relative to that of a volume strain of 1
     double error;     ///< the larger of force/reference and volume
 } sn_fe_balance;
@@ -30,6 +31,7 @@ typedef struct sn_fe_problem {
     sn_fe_pattern *pattern;
     sn_fe_materials *materials;
     sn_fe_boundary *boundary;
+    sn_fe_inertia *inertia; ///< NULL unless the analysis is dynamic
     sn_fe_solver *solver;
     sn_fe_work *work;
     sn_fe_level level;
@@ -53,5 +55,9 @@ void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out
 /// Evaluates the tangent at a sound x, for increments `lift` of prescribed unknowns (Nullable): see
 /// `lifted`.
 void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift);
-/// Accepts x as the end of the step: memory, contact, reference.
+/// The part of the tangent that belongs to the cells, without loads, contact and inertia: all there
+/// is of it in linear analysis.
+void sn_fe_problem_stiffness(sn_fe_problem *p, const double *x, const double *lift);
+/// Accepts x as the end of the step: memory, contact, reference, motion. Of a dynamic problem the
+/// residual becomes the forces that supports exert, inertia included.
 void sn_fe_problem_commit(sn_fe_problem *p, const double *x, const sn_fe_balance *balance);

@@ -48,8 +48,9 @@ static void keep(motion *basis, int *count, const motion v, double length) {
     (*count)++;
 }
 
-// What the fixed directions see: each time the row that is least seen so far.
-static int seen_motions(const sn_fe_space *s, motion *basis) {
+// What the fixed directions see: each time the row that is least seen so far. With `part`, of the
+// nodes of one part of the body alone.
+static int seen_motions(const sn_fe_space *s, const int *part, int which, motion *basis) {
     int count = 0;
     while (count < 6) {
         motion best = {0};
@@ -57,7 +58,7 @@ static int seen_motions(const sn_fe_space *s, motion *basis) {
         for (int a = 0; a < s->nodes; a++)
             for (int d = 0; d < 3; d++) {
                 motion v;
-                if (!(s->fixed[a] >> d & 1)) continue;
+                if (!(s->fixed[a] >> d & 1) || (part && part[a] != which)) continue;
                 row_of(s, a, d, v);
                 double length = reduce(basis, count, v);
                 if (length > longest) {
@@ -118,7 +119,7 @@ static void find_size(sn_fe_space *s) {
 void sn_fe_rigid_find(sn_fe_space *s) {
     motion basis[6];
     find_size(s);
-    int seen = seen_motions(s, basis), count = seen;
+    int seen = seen_motions(s, NULL, 0, basis), count = seen;
     while (count < 6) { // complete the basis: each time the unit motion that is least in it
         motion best = {0};
         double longest = 0.0;
@@ -137,6 +138,52 @@ void sn_fe_rigid_find(sn_fe_space *s) {
     memcpy(s->free_motion, basis + seen, (size_t)s->free_motions * sizeof *basis);
     choose_pins(s);
 }
+
+//---- parts of the body that do not hang together -------------------------------------------------
+
+static int part_of(int *part, int node) {
+    while (part[node] != node) node = part[node] = part[part[node]];
+    return node;
+}
+
+// The smallest node of its part for every node; returns how many parts there are.
+static int find_parts(const sn_fe_space *s, int *part) {
+    int parts = 0, nodes = s->element.nodes, width = s->batch_cells;
+    for (int a = 0; a < s->nodes; a++) part[a] = a;
+    for (int b = 0; b < s->batches; b++)
+        for (int at = 0; at < s->batch_count[b]; at++) {
+            const int *node = s->node + (size_t)b * (size_t)(nodes * width) + at;
+            for (int k = 1; k < nodes; k++) {
+                int one = part_of(part, node[0]), other = part_of(part, node[k * width]);
+                part[one > other ? one : other] = one > other ? other : one;
+            }
+        }
+    for (int a = 0; a < s->nodes; a++) {
+        part[a] = part_of(part, a);
+        parts += part[a] == a;
+    }
+    return parts;
+}
+
+sn_status sn_fe_rigid_parts(const sn_fe_space *s) {
+    int *part = sn_alloc((size_t)s->nodes, sizeof *part);
+    if (!part) return SN_E_MEMORY;
+    sn_status status = SN_OK;
+    int parts = find_parts(s, part);
+    for (int a = 0; a < s->nodes && parts > 1 && status == SN_OK; a++) {
+        motion basis[6];
+        if (part[a] != a || seen_motions(s, part, a, basis) == 6) continue;
+        const double *at = s->rest + 3 * a;
+        status = sn_fail(SN_E_DEFINITION,
+                         "the mesh has %d parts that do not touch, and the one at (%.4g, %.4g, "
+                         "%.4g) m hangs on nothing: join it to the rest, leave it out, or fix it",
+                         parts, at[0], at[1], at[2]);
+    }
+    sn_free(part);
+    return status;
+}
+
+//---- loads ---------------------------------------------------------------------------------------
 
 static bool balanced(const sn_fe_space *s, const double *force) {
     double total = 0.0;

@@ -7,25 +7,40 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "continuum/march.h"
+#include "continuum/linear.h"
 
 static sn_status check(const sn_case *c) {
-    if (c->continuum.analysis != SN_ANALYSIS_QUASI_STATIC)
-        return sn_fail(SN_E_UNSUPPORTED, "continuum: analysis: dynamic is not supported, only "
-                                         "quasi-static; motion with inertia runs on the engine "
-                                         "springs");
     if (!(c->continuum.tolerance > 0.0) || !(c->continuum.memory_tolerance > 0.0))
         return sn_fail(
             SN_E_RANGE,
             "continuum: tolerance and memory_tolerance must be positive, found %g and %g",
             c->continuum.tolerance, c->continuum.memory_tolerance);
+    double rho = c->continuum.rho_infinity;
+    if (!(rho >= 0.0 && rho <= 1.0))
+        return sn_fail(SN_E_RANGE, "continuum: rho_infinity must be from 0 to 1, found %g", rho);
     SN_TRY(sn_case_check(c));
     int carrier = sn_case_carried_by(c);
-    if (carrier >= 0)
+    if (carrier >= 0 && c->continuum.analysis != SN_ANALYSIS_DYNAMIC)
         return sn_fail(SN_E_DEFINITION,
                        "continuum: no supports: the body would only be carried along by the rigid "
                        "motion of \"%s\"; hold another surface under \"supports\"",
                        c->mesh->surface[carrier].name);
+    return SN_OK;
+}
+
+// What small strain leaves out.
+static sn_status check_linear(const sn_case *c) {
+    const sn_memory none = sn_memory_none();
+    if (c->continuum.analysis != SN_ANALYSIS_LINEAR) return SN_OK;
+    if (c->tool_count > 0)
+        return sn_fail(SN_E_UNSUPPORTED, "continuum: contact with tools is not linear; use "
+                                         "analysis: quasi-static");
+    for (int r = 0; r < c->mesh->region_count; r++)
+        if (c->tissue[r].memory.law != none.law)
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "region \"%s\": analysis: linear is elastic, and the tissue has a "
+                           "memory; use analysis: quasi-static, or take the memory out",
+                           c->mesh->region_name[r]);
     return SN_OK;
 }
 
@@ -51,29 +66,47 @@ static void describe_body(const sn_fe_problem *p, sn_run_summary *s) {
     }
 }
 
-// Energies: quasi-static, so that what came in and is not stored has been dissipated. With memory,
-// what is stored is known only where the body is back in its rest shape and relaxed: the elastic
-// law gives the energy of the same strain reached at once.
-static void balance_energy(const sn_fe_march *m, sn_run_summary *s) {
+// Energies: what came in and is neither stored nor moves has been dissipated. With memory, what is
+// stored is known only where the body is back in its rest shape and relaxed: the elastic law gives
+// the energy of the same strain reached at once.
+static void balance_energy(sn_fe_march *m, sn_run_summary *s) {
+    if (m->c->continuum.analysis == SN_ANALYSIS_LINEAR) {
+        s->elastic_J = sn_fe_linear_energy(m);
+        double size = fmax(fabs(s->external_work_J), s->elastic_J);
+        if (size > 0.0) s->energy_residual = fabs(s->external_work_J - s->elastic_J) / size;
+        return;
+    }
     // a step that failed has changed the factors of the memory: an instantaneous one undoes that
     if (m->stopped)
         sn_fe_problem_begin(m->problem, (sn_fe_level){m->problem->level.time, 1.0, 0.0});
     s->elastic_J = sn_fe_measure_energy(m->problem, m->x);
-    double lost = s->external_work_J - s->elastic_J;
-    double largest = fmax(fabs(s->external_work_J), fabs(s->elastic_J));
+    if (m->problem->inertia)
+        s->kinetic_J = sn_fe_inertia_energy(m->problem->inertia, m->problem->space);
+    double lost = s->external_work_J - s->elastic_J - s->kinetic_J;
+    double largest = fmax(fmax(fabs(s->external_work_J), fabs(s->elastic_J)), s->kinetic_J);
     if (m->problem->materials->remembers)
         s->dissipated_J = lost;
-    else // the trapezoidal rule of the work is all that is left
+    else // left: the trapezoidal rule of the work, friction, the damping of the steps
         s->energy_residual = largest > 0.0 ? fabs(lost) / largest : 0.0;
 }
 
-static void sum_up(sn_fe_march *m, double start, sn_run_summary *s) {
+#define LONG_STEP 1e-3 // error of one step, of the largest displacement, that a note is worth
+
+static void judge_steps(const sn_fe_inertia *i, sn_run_summary *s) {
+    if (!i || s->note[0] || !(i->error > LONG_STEP * i->way)) return;
+    snprintf(s->note, sizeof s->note,
+             "steps are long for this motion: one errs by up to %.2g of the largest displacement "
+             "(rms); what is faster than some %.2g s is damped, shorten continuum: step to see it",
+             i->error / i->way, 10.0 * s->step_s);
+}
+
+static void sum_up(sn_fe_march *m, sn_run_summary *s) {
     describe_body(m->problem, s);
     balance_energy(m, s);
-    s->wall_s = sn_clock() - start;
+    s->wall_s = sn_clock() - m->started;
     s->real_time_factor = s->simulated_s / s->wall_s;
     s->converged = !m->stopped;
-    size_t steps = (size_t)s->steps;
+    size_t steps = m->walls; // of this session, where the run was resumed
     if (steps > 0) {
         qsort(m->wall, steps, sizeof *m->wall, compare_double);
         s->step_wall_p50_s = m->wall[(steps - 1) / 2];
@@ -84,6 +117,7 @@ static void sum_up(sn_fe_march *m, double start, sn_run_summary *s) {
         snprintf(s->note, sizeof s->note,
                  "%d of %ld steps were accepted at rounding level, above the tolerance of %.3g",
                  m->rounded, s->steps, m->c->continuum.tolerance);
+    judge_steps(m->problem->inertia, s);
     if (m->problem->materials->remembers && !s->note[0])
         snprintf(s->note, sizeof s->note,
                  "elastic_J is the energy of the last strain if it were reached at once; a relaxed "
@@ -92,13 +126,23 @@ static void sum_up(sn_fe_march *m, double start, sn_run_summary *s) {
 
 sn_status sn_continuum_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                            sn_record *history) {
-    double start = sn_clock();
+    return sn_continuum_resume(c, output, NULL, summary, history);
+}
+
+sn_status sn_continuum_resume(const sn_case *c, const sn_output *output, const sn_restart *restart,
+                              sn_run_summary *summary, sn_record *history) {
     sn_fe_march march;
     *summary = (sn_run_summary){0};
     SN_TRY(check(c));
+    SN_TRY(check_linear(c));
+    if (restart && restart->state && c->continuum.analysis == SN_ANALYSIS_LINEAR)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "resume: analysis: linear has no state to go on from; run it again");
     sn_status status = sn_fe_march_init(&march, c, output, summary, history);
-    if (status == SN_OK) status = sn_fe_march_go(&march);
-    if (status == SN_OK) sum_up(&march, start, summary);
+    march.restart = restart;
+    bool linear = c->continuum.analysis == SN_ANALYSIS_LINEAR;
+    if (status == SN_OK) status = linear ? sn_fe_linear_go(&march) : sn_fe_march_go(&march);
+    if (status == SN_OK) sum_up(&march, summary);
     sn_fe_march_free(&march);
     return status;
 }

@@ -123,6 +123,7 @@ sn_status sn_fe_schedule_create(const sn_case *c, bool remembers, sn_fe_schedule
     for (int k = 0; k < history_count(c); k++)
         most += history_of(c, k) ? (size_t)history_of(c, k)->count : 0;
     sn_fe_schedule s = {.longest = c->until / (c->continuum.steps > 0 ? c->continuum.steps : 1)};
+    if (c->continuum.step > 0.0) s.longest = fmin(c->continuum.step, c->until);
     s.shortest = s.longest;
     s.stop = sn_alloc(most + (size_t)outputs, sizeof *s.stop);
     if (!s.stop) return SN_E_MEMORY;

@@ -29,7 +29,7 @@ static const char *const rung_names[] = {"central", "coupled", "smoothed"};
 static const char *const integrator_names[] = {"explicit", "implicit", "quasi-static"};
 static const char *const precision_names[] = {"single", "double"};
 static const char *const element_names[] = {"P1", "P2", "P2P1"};
-static const char *const analysis_names[] = {"quasi-static", "dynamic"};
+static const char *const analysis_names[] = {"quasi-static", "dynamic", "linear"};
 
 static sn_status read_step(const sn_yaml *node, double *step) {
     if (node->kind == SN_YAML_TEXT) {
@@ -77,20 +77,26 @@ sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
 }
 
 sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
-    static const char *const keys[] = {"element", "analysis", "steps", "tolerance",
-                                       "memory_tolerance"};
+    static const char *const keys[] = {"element",      "analysis",  "steps",           "step",
+                                       "rho_infinity", "tolerance", "memory_tolerance"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 5));
+    SN_TRY(sn_yaml_map(node, keys, 7));
     if ((value = sn_yaml_get(node, "element"))) {
         SN_TRY(sn_yaml_choice(value, element_names, 3, &index));
         def->element = (sn_element)index;
     }
     if ((value = sn_yaml_get(node, "analysis"))) {
-        SN_TRY(sn_yaml_choice(value, analysis_names, 2, &index));
+        SN_TRY(sn_yaml_choice(value, analysis_names, 3, &index));
         def->analysis = (sn_analysis)index;
     }
     if ((value = sn_yaml_get(node, "steps"))) SN_TRY(sn_yaml_int(value, 1, 1000000, &def->steps));
+    if ((value = sn_yaml_get(node, "step"))) SN_TRY(read_positive(value, "s", &def->step));
+    if ((value = sn_yaml_get(node, "rho_infinity"))) {
+        SN_TRY(sn_yaml_quantity(value, "1", &def->rho_infinity));
+        if (!(def->rho_infinity >= 0.0 && def->rho_infinity <= 1.0))
+            return sn_yaml_expected(value, SN_E_RANGE, "0 (most damping) to 1 (none)");
+    }
     if ((value = sn_yaml_get(node, "tolerance"))) SN_TRY(read_tolerance(value, &def->tolerance));
     if ((value = sn_yaml_get(node, "memory_tolerance")))
         SN_TRY(read_tolerance(value, &def->memory_tolerance));

@@ -203,6 +203,20 @@ static sn_status write_file(sn_vtu *vtu) {
     return sn_text_write(vtu->path.text, vtu->file.text, vtu->file.size);
 }
 
+static void list_frame(sn_vtu *vtu, double time) {
+    sn_buffer_text(&vtu->list, "<DataSet timestep=\"");
+    add_time(&vtu->list, time);
+    sn_buffer_text(&vtu->list, "\" part=\"0\" file=\"");
+    sn_buffer_escape(&vtu->list, vtu->name);
+    sn_buffer_print(&vtu->list, "_%04d.vtu\"/>\n", vtu->frames);
+}
+
+sn_status sn_vtu_continue(sn_vtu *vtu, int frames, const double *time) {
+    SN_ASSERT(vtu->frames == 0);
+    for (; vtu->frames < frames; vtu->frames++) list_frame(vtu, time[vtu->frames]);
+    return vtu->list.status;
+}
+
 sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
     fill_frame(vtu, frame);
     vtu->path.size = 0;
@@ -210,11 +224,7 @@ sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
     SN_TRY(write_file(vtu));
 
     size_t before = vtu->list.size;
-    sn_buffer_text(&vtu->list, "<DataSet timestep=\"");
-    add_time(&vtu->list, frame->time);
-    sn_buffer_text(&vtu->list, "\" part=\"0\" file=\"");
-    sn_buffer_escape(&vtu->list, vtu->name);
-    sn_buffer_print(&vtu->list, "_%04d.vtu\"/>\n", vtu->frames);
+    list_frame(vtu, frame->time);
     if (vtu->list.status != SN_OK) return vtu->list.status;
     fill_collection(vtu);
     vtu->path.size = 0;

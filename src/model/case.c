@@ -21,6 +21,7 @@ sn_continuum_def sn_continuum_def_default(void) {
     return (sn_continuum_def){.element = SN_ELEMENT_P2P1,
                               .analysis = SN_ANALYSIS_QUASI_STATIC,
                               .steps = 20,
+                              .rho_infinity = 0.8,
                               .tolerance = 1e-8,
                               .memory_tolerance = 1e-4};
 }

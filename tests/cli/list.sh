@@ -86,6 +86,7 @@ awk 'BEGIN { print "frequency [Hz],storage_modulus [kPa],loss_modulus [kPa]"
 "$SINEW" fit tensile.csv --elastic mooney-rivlin --json >fit-2.json
 "$SINEW" run c.yaml --engine springs --json >run-1.json
 "$SINEW" run c.yaml --engine continuum --json >run-2.json
+"$SINEW" run c.yaml --engine continuum --refine 2 --json >run-3.json
 "$SINEW" compare c.yaml --json >compare-1.json
 "$SINEW" convert t.yaml t.feb --stress-unit kPa --time-unit s --json >convert-1.json
 for topic in equations options keys laws memories protocols; do

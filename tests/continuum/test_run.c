@@ -121,9 +121,6 @@ static void refusals(void **state) {
     CHECK_FAILS(sn_continuum_run(c, NULL, &summary, r), SN_E_UNSUPPORTED, "P2P1");
     c->continuum.element = SN_ELEMENT_P2;
     CHECK_FAILS(sn_continuum_run(c, NULL, &summary, r), SN_E_UNSUPPORTED, "P2P1");
-    c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
-    CHECK_FAILS(sn_continuum_run(c, NULL, &summary, r), SN_E_UNSUPPORTED, "dynamic");
-    c->continuum.analysis = SN_ANALYSIS_QUASI_STATIC;
     c->continuum.element = SN_ELEMENT_P2P1;
     c->support_count = 1; // left x only
     body_pull(c, "top", 0, 300, 0, NULL);

@@ -1,0 +1,210 @@
+// The state of a run as bytes, so that a killed run can go on.
+// SPDX-License-Identifier: Apache-2.0
+//
+// One function, visit(), names every part of the state; it is called three times: to count, to
+// write, to read.
+#include "continuum/state.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define SAME_TIME 1e-9 // of `until`
+
+typedef enum direction { COUNT, WRITE, READ } direction;
+
+typedef struct archive {
+    direction way;
+    unsigned char *at; ///< next byte
+    size_t size;       ///< counted so far; of a read: bytes that are left
+    bool good;         ///< false: a read came to the end, or found what cannot be
+} archive;
+
+static void pass(archive *a, void *data, size_t bytes) {
+    if (a->way == COUNT) {
+        a->size += bytes;
+        return;
+    }
+    if (a->way == READ) {
+        a->good &= bytes <= a->size;
+        if (!a->good) return;
+        memcpy(data, a->at, bytes);
+        a->size -= bytes;
+    } else {
+        memcpy(a->at, data, bytes);
+    }
+    a->at += bytes;
+}
+
+static void pass_doubles(archive *a, double *data, size_t count) {
+    pass(a, data, count * sizeof *data);
+}
+
+// A number that must be the same on both sides.
+static void agree(archive *a, uint64_t here) {
+    uint64_t there = here;
+    pass(a, &there, sizeof there);
+    a->good &= there == here;
+}
+
+//---- which case ---------------------------------------------------------------------------------
+
+// FNV-1a, 64 bits.
+static void mix(uint64_t *hash, const void *data, size_t bytes) {
+    const unsigned char *byte = data;
+    for (size_t k = 0; k < bytes; k++) *hash = (*hash ^ byte[k]) * 1099511628211u;
+}
+
+static void mix_history(uint64_t *hash, const sn_history *h) {
+    if (!h) return;
+    mix(hash, h->time, (size_t)h->count * sizeof *h->time);
+    mix(hash, h->value, (size_t)h->count * (size_t)h->channels * sizeof *h->value);
+}
+
+// What the numbers of the state mean: body, tissues with the exponentials of their memories, loads,
+// tools, element, analysis. Not the length of the steps and the tolerance, which may be changed.
+static uint64_t fingerprint(const sn_fe_march *m) {
+    const sn_case *c = m->c;
+    uint64_t hash = 14695981039346656037u;
+    const int kind[] = {(int)c->continuum.element,
+                        (int)c->continuum.analysis,
+                        c->load_count,
+                        c->tool_count,
+                        c->support_count,
+                        c->probe_count};
+    mix(&hash, kind, sizeof kind);
+    mix(&hash, c->mesh->node, 3 * (size_t)c->mesh->node_count * sizeof *c->mesh->node);
+    mix(&hash, c->mesh->cell, 4 * (size_t)c->mesh->cell_count * sizeof *c->mesh->cell);
+    mix(&hash, c->fibre, sizeof c->fibre);
+    mix(&hash, c->gravity, sizeof c->gravity);
+    for (int r = 0; r < m->problem->materials->count; r++) {
+        const sn_fe_material *of = m->problem->materials->material + r;
+        const sn_exponentials *e = &of->series;
+        mix(&hash, of->tissue->law->name, strlen(of->tissue->law->name));
+        mix(&hash, of->tissue->value, sizeof of->tissue->value);
+        mix(&hash, &of->tissue->density, sizeof of->tissue->density);
+        mix(&hash, &e->g_inf, sizeof e->g_inf);
+        mix(&hash, &e->viscous, sizeof e->viscous);
+        mix(&hash, e->g, (size_t)e->terms * sizeof *e->g);
+        mix(&hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    }
+    for (int k = 0; k < c->support_count; k++)
+        mix(&hash, c->support[k].fix, sizeof c->support[k].fix);
+    for (int k = 0; k < c->load_count; k++) {
+        mix(&hash, &c->load[k].kind, sizeof c->load[k].kind);
+        mix(&hash, c->load[k].vector, sizeof c->load[k].vector);
+        mix(&hash, &c->load[k].pressure, sizeof c->load[k].pressure);
+        mix_history(&hash, c->load[k].factor);
+    }
+    for (int k = 0; k < c->tool_count; k++) {
+        mix(&hash, c->tool[k].at, sizeof c->tool[k].at);
+        mix_history(&hash, c->tool[k].path);
+        mix_history(&hash, c->tool[k].turn);
+    }
+    return hash;
+}
+
+//---- the parts ----------------------------------------------------------------------------------
+
+static void visit_history(archive *a, sn_record *history, double *row, sn_status *status) {
+    uint64_t rows = (uint64_t)history->rows;
+    agree(a, (uint64_t)history->series_count);
+    pass(a, &rows, sizeof rows);
+    size_t columns = (size_t)history->series_count;
+    for (uint64_t n = 0; n < rows && a->good; n++) {
+        for (size_t k = 0; k < columns && a->way != READ; k++) row[k] = history->series[k].value[n];
+        pass_doubles(a, row, columns);
+        if (a->way != READ || !a->good) continue;
+        if ((*status = sn_record_append(history, row)) != SN_OK) a->good = false;
+    }
+}
+
+static void visit_inertia(archive *a, sn_fe_inertia *i, size_t nodes) {
+    if (!i) return;
+    pass(a, &i->moving, sizeof i->moving);
+    pass_doubles(a, &i->error, 1);
+    pass_doubles(a, &i->way, 1);
+    double *const vectors[] = {i->u, i->v, i->a, i->r, i->reaction};
+    for (size_t k = 0; k < sizeof vectors / sizeof *vectors; k++)
+        pass_doubles(a, vectors[k], 3 * nodes);
+}
+
+static void visit_counters(archive *a, sn_fe_march *m) {
+    sn_run_summary *s = m->summary;
+    pass(a, &s->steps, sizeof s->steps);
+    pass(a, &s->newton_iterations, sizeof s->newton_iterations);
+    pass(a, &s->cutbacks, sizeof s->cutbacks);
+    pass(a, &m->rounded, sizeof m->rounded);
+    double *const numbers[] = {
+        &s->step_s, &s->simulated_s, &s->external_work_J, &m->last_step,
+        &m->wish,   &m->limit,       &m->elapsed,         &m->problem->reference};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) pass_doubles(a, numbers[k], 1);
+    pass(a, s->note, sizeof s->note);
+}
+
+static void visit(archive *a, sn_fe_march *m, double *time, sn_status *status) {
+    sn_fe_problem *p = m->problem;
+    size_t dofs = (size_t)p->space->dofs;
+    agree(a, 0x316574617473u); // "state1", and the order of bytes
+    agree(a, fingerprint(m));
+    agree(a, dofs);
+    agree(a, p->materials->numbers);
+    pass_doubles(a, time, 1);
+    visit_counters(a, m);
+    pass_doubles(a, m->x, dofs);
+    pass_doubles(a, m->older, dofs);
+    pass_doubles(a, m->force, dofs);
+    pass_doubles(a, p->materials->state, p->materials->numbers);
+    size_t pairs = (size_t)m->c->tool_count * (size_t)p->boundary->spots;
+    if (pairs) pass(a, p->boundary->before, pairs * sizeof *p->boundary->before);
+    visit_inertia(a, p->inertia, (size_t)p->space->nodes);
+    visit_history(a, m->history, m->measure->row, status);
+}
+
+//---- the two ends -------------------------------------------------------------------------------
+
+sn_status sn_fe_state_save(sn_fe_march *m, double time) {
+    archive a = {.way = COUNT, .good = true};
+    sn_status status = SN_OK;
+    if (!m->restart || !m->restart->save) return SN_OK;
+    m->elapsed = sn_clock() - m->started;
+    visit(&a, m, &time, &status);
+    unsigned char *bytes = sn_alloc(a.size, 1);
+    if (!bytes) return SN_E_MEMORY;
+    a.way = WRITE;
+    a.at = bytes;
+    visit(&a, m, &time, &status);
+    status = m->restart->save(m->restart->context, bytes, a.size);
+    sn_free(bytes);
+    return status;
+}
+
+sn_status sn_fe_state_restore(sn_fe_march *m, int *stop) {
+    *stop = -1;
+    if (!m->restart || !m->restart->state) return SN_OK;
+    archive a = {.way = READ, .good = true, .size = m->restart->bytes};
+    sn_status status = SN_OK;
+    double time = 0.0;
+    uint64_t head[2];
+    if (a.size >= sizeof head) memcpy(head, m->restart->state, sizeof head);
+    if (a.size >= sizeof head && head[1] != fingerprint(m))
+        return sn_fail(SN_E_DATA, "resume: the state is not of this case: mesh, tissues, loads, "
+                                  "element and analysis must be those of the run that was killed");
+    unsigned char *copy = sn_alloc(a.size, 1);
+    if (!copy) return SN_E_MEMORY;
+    memcpy(copy, m->restart->state, a.size);
+    a.at = copy;
+    visit(&a, m, &time, &status);
+    sn_free(copy);
+    if (status != SN_OK) return status;
+    if (!a.good || a.size != 0)
+        return sn_fail(SN_E_DATA, "resume: the state of %zu bytes is damaged or of another version",
+                       m->restart->bytes);
+    m->started = sn_clock() - m->elapsed;
+    for (int k = 0; k < m->schedule.count; k++)
+        if (fabs(m->schedule.stop[k].time - time) <= SAME_TIME * m->c->until) *stop = k;
+    if (*stop < 0)
+        return sn_fail(SN_E_DATA, "resume: the case has no output at %g s, where the state is",
+                       time);
+    return SN_OK;
+}

@@ -1,0 +1,145 @@
+// Linear statics: against the quasi-static analysis as strain goes to zero, and exact homogeneity.
+// SPDX-License-Identifier: Apache-2.0
+#include "body.h"
+
+typedef struct fields {
+    const sn_mesh *mesh;
+    double stress[6], strain[6], pressure, energy; ///< means over the body of the last frame
+} fields;
+
+static sn_status keep(void *context, const sn_frame *frame) {
+    fields *f = context;
+    double volume = 0;
+    memset(f->stress, 0, sizeof f->stress);
+    memset(f->strain, 0, sizeof f->strain);
+    f->energy = f->pressure = 0;
+    for (int n = 0; n < f->mesh->cell_count; n++) {
+        double v = sn_mesh_cell_volume(f->mesh, n);
+        for (int k = 0; k < 6; k++) {
+            f->strain[k] += v * frame->fields[2].value[6 * n + k];
+            f->stress[k] += v * frame->fields[3].value[6 * n + k];
+        }
+        f->energy += v * frame->fields[4].value[n];
+        volume += v;
+    }
+    for (int k = 0; k < 6; k++) {
+        f->stress[k] /= volume;
+        f->strain[k] /= volume;
+    }
+    for (int n = 0; n < f->mesh->node_count; n++)
+        f->pressure += frame->fields[1].value[n] / f->mesh->node_count;
+    return SN_OK;
+}
+
+// A bent block with fibres under traction, pressure, gravity and a moved end.
+static sn_case *loaded(sn_element element, double size) {
+    sn_tissue t = body_guccione(900, element == SN_ELEMENT_P2P1 ? (double)INFINITY : 5e3);
+    sn_case *c = body_block(0.03, 0.01, 0.01, 3, 1, 1, &t, element);
+    const double fibre[3] = {0.48, 0.6, 0.64};
+    memcpy(c->fibre, fibre, sizeof fibre);
+    body_support(c, "left", true, true, true);
+    body_move(c, "right", ANY, ANY, 1e-3 * size, body_ramp(0, 1));
+    body_pull(c, "top", 5 * size, 0, 0, body_ramp(0, 1));
+    body_press(c, "back", 10 * size, body_ramp(0, 1));
+    body_probe(c, "tip", 0.03, 0.005, 0.005);
+    body_reaction(c, "wall", "left");
+    c->continuum.tolerance = 1e-11;
+    return c;
+}
+
+// The two analyses differ by the square of the load: by a quarter for half of it, relative to it by
+// a half. Differences above 1e-9 of the value are counted.
+static void limit(void **state) {
+    (void)state;
+    static const char *const column[] = {"tip_ux", "wall_fx", "wall_fz"};
+    for (int e = 0; e < 3; e++) {
+        double difference[2][5];
+        for (int half = 0; half < 2; half++) {
+            double value[2][5];
+            for (int linear = 0; linear < 2; linear++) {
+                sn_case *c = loaded((sn_element)e, half ? 0.01 : 0.02);
+                if (linear) c->continuum.analysis = SN_ANALYSIS_LINEAR;
+                fields f = {.mesh = c->mesh};
+                sn_output output = {.context = &f, .frame = keep};
+                sn_run_summary s;
+                sn_record *r = body_run(c, &output, &s);
+                for (int k = 0; k < 3; k++) value[linear][k] = body_last(r, column[k]);
+                value[linear][3] = f.stress[0];
+                value[linear][4] = f.pressure;
+                if (linear) {
+                    assert_int_equal(s.newton_iterations, 2); // one solution a stop: 0 and 1 s
+                    // work of a linear path, and the energy of its end
+                    CHECK_REL(s.elastic_J, s.external_work_J, 1e-6);
+                    CHECK_REL(f.energy, s.elastic_J, 1e-5);
+                }
+                sn_record_destroy(r);
+                sn_case_destroy(c);
+            }
+            for (int k = 0; k < 5; k++)
+                difference[half][k] = (value[0][k] - value[1][k]) / value[1][k];
+        }
+        for (int k = 0; k < 5; k++) {
+            if (getenv("SINEW_SHOW"))
+                print_message("element %d, %d: %.3g %.3g\n", e, k, difference[0][k],
+                              difference[1][k]);
+            assert_true(fabs(difference[0][k]) > 1e-8 && fabs(difference[0][k]) < 0.1);
+            CHECK_REL(difference[0][k] / difference[1][k], 2, 0.05);
+        }
+    }
+}
+
+// Twice the load gives twice of all to rounding, however large, with no iteration; a strain of 300
+// % is no obstacle. Uniaxial closed form: E = 9 K G/(3 K + G).
+static void homogeneous(void **state) {
+    (void)state;
+    const double G = 3000, K = 6000, E = 9 * K * G / (3 * K + G);
+    sn_tissue t = body_neo_hookean(G, K);
+    for (int e = 0; e < 3; e++) {
+        sn_case *c = body_block(0.03, 0.02, 0.015, 2, 1, 1, &t, (sn_element)e);
+        body_rollers(c);
+        body_pull(c, "right", 3 * E, 0, 0, body_ramp(0, 1));
+        body_probe(c, "tip", 0.03, 0.02, 0.015);
+        body_reaction(c, "wall", "left");
+        c->continuum.analysis = SN_ANALYSIS_LINEAR;
+        c->output_every = 0.5;
+        fields f = {.mesh = c->mesh};
+        sn_output output = {.context = &f, .frame = keep};
+        sn_run_summary s;
+        sn_record *r = body_run(c, &output, &s);
+        CHECK_REL(body_last(r, "tip_ux"), 3 * 0.03, 1e-10);
+        CHECK_REL(sn_record_values(r, "tip_ux")[1], 1.5 * 0.03, 1e-10);
+        CHECK_REL(body_last(r, "tip_uy"), -3 * 0.02 * (E / (2 * G) - 1), 1e-10);
+        CHECK_REL(body_last(r, "wall_fx"), -3 * E * 3e-4, 1e-7); // probed at a strain of 1e-5
+        CHECK_REL(f.stress[0], 3 * E, 1e-7);
+        CHECK_REL(f.strain[0], 3, 1e-7);
+        CHECK_ABS(f.stress[1] / E, 0, 1e-6);
+        CHECK_REL(f.pressure, -E, 1e-6);
+        CHECK_REL(s.elastic_J, 0.5 * 9 * E * 9e-6, 1e-6);
+        sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+}
+
+static void refusals(void **state) {
+    (void)state;
+    sn_run_summary s;
+    sn_record *r;
+    CHECK_OK(sn_record_create("test", &r));
+    sn_case *c = loaded(SN_ELEMENT_P1, 1);
+    c->continuum.analysis = SN_ANALYSIS_LINEAR;
+    const double prony[] = {0.4, 0.01};
+    body_set_memory(c->tissue, "prony", 1, prony, 2);
+    CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_UNSUPPORTED, "memory");
+    c->tissue->memory = sn_memory_none();
+    c->tool[c->tool_count++] =
+        (sn_tool){.name = "ball", .radius = 0.003, .at = {0.015, 0.005, 0.02}};
+    CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_UNSUPPORTED, "contact");
+    sn_record_destroy(r);
+    sn_case_destroy(c);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(limit), cmocka_unit_test(homogeneous),
+                                       cmocka_unit_test(refusals)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,184 @@
+// Hard cases from default settings: each converges by itself or says why it does not.
+// SPDX-License-Identifier: Apache-2.0
+#include "body.h"
+
+static void defaults(sn_case *c) {
+    c->continuum = sn_continuum_def_default();
+}
+
+static void show(const char *what, const sn_run_summary *s) {
+    if (getenv("SINEW_SHOW"))
+        print_message("%s (%s): %ld steps, %d iterations, %d cutbacks %s\n", what, s->model,
+                      s->steps, s->newton_iterations, s->cutbacks, s->reason);
+}
+
+// A clamped block pulled to twice its length, and one pressed to half: all elements.
+static void large_strain(void **state) {
+    (void)state;
+    static const double by[] = {0.02, -0.01};
+    for (int k = 0; k < 2; k++)
+        for (int e = 0; e < 3; e++) {
+            sn_tissue t = body_neo_hookean(3000, 15e3);
+            sn_case *c = body_block(0.02, 0.02, 0.02, 3, 3, 3, &t, SN_ELEMENT_P1);
+            defaults(c);
+            c->continuum.element = (sn_element)e;
+            body_support(c, "left", true, true, true);
+            body_move(c, "right", by[k], 0, 0, body_ramp(0, 1));
+            body_reaction(c, "pull", "right");
+            sn_run_summary s;
+            sn_record *r = body_run(c, NULL, &s);
+            show(k ? "half" : "twice", &s);
+            assert_true(body_last(r, "pull_fx") * by[k] > 0);
+            sn_record_destroy(r);
+            sn_case_destroy(c);
+        }
+}
+
+// An exponential law far into its steep part: the traction is 1000 times c, in one go.
+static void steep(void **state) {
+    (void)state;
+    sn_tissue t = body_demiray(500, 20, (double)INFINITY);
+    for (int k = 0; k < 2; k++) { // ramped, and at once at time 0
+        sn_case *c = body_block(0.02, 0.01, 0.01, 2, 1, 1, &t, SN_ELEMENT_P2P1);
+        defaults(c);
+        body_support(c, "left", true, true, true);
+        body_pull(c, "right", 5e5, 0, 0, k ? NULL : body_ramp(0, 1));
+        body_reaction(c, "wall", "left");
+        sn_run_summary s;
+        sn_record *r = body_run(c, NULL, &s);
+        show("steep", &s);
+        CHECK_REL(body_last(r, "wall_fx"), -50, 1e-6);
+        sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+}
+
+// nu = 0.4999 and incompressible: the mixed element stays right, the two answers differ by about
+// 1 - 2 nu.
+static void nearly_incompressible(void **state) {
+    (void)state;
+    double tip[2];
+    for (int k = 0; k < 2; k++) {
+        double nu = 0.4999, G = 3000;
+        sn_tissue t =
+            body_neo_hookean(G, k ? (double)INFINITY : 2 * G * (1 + nu) / (3 * (1 - 2 * nu)));
+        sn_case *c = body_block(0.04, 0.01, 0.01, 4, 1, 1, &t, SN_ELEMENT_P2P1);
+        defaults(c);
+        body_support(c, "left", true, true, true);
+        body_pull(c, "right", 0, 0, 60, body_ramp(0, 1));
+        body_probe(c, "tip", 0.04, 0.005, 0.005);
+        sn_run_summary s;
+        sn_record *r = body_run(c, NULL, &s);
+        show("nu", &s);
+        tip[k] = body_last(r, "tip_uz");
+        sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+    assert_true(tip[0] > 0.002);
+    CHECK_REL(tip[0], tip[1], 1e-3);
+}
+
+// A sheet of 1:100 in one layer of cells, bent by gravity to several times its thickness.
+static void thin_sheet(void **state) {
+    (void)state;
+    sn_tissue t = body_neo_hookean(1e5, 5e5);
+    sn_case *c = body_block(0.1, 0.02, 0.001, 12, 2, 1, &t, SN_ELEMENT_P2P1);
+    defaults(c);
+    body_support(c, "left", true, true, true);
+    c->gravity[2] = -9.81;
+    body_probe(c, "tip", 0.1, 0.01, 0.0005);
+    sn_run_summary s;
+    sn_record *r = body_run(c, NULL, &s);
+    show("sheet", &s);
+    assert_true(body_last(r, "tip_uz") < -0.01);
+    sn_record_destroy(r);
+    sn_case_destroy(c);
+}
+
+// A neo-Hookean balloon under more pressure than it can carry: an end with a reason that names the
+// way out, the last state kept.
+static void limit_point(void **state) {
+    (void)state;
+    sn_tissue t = body_neo_hookean(3000, (double)INFINITY);
+    sn_shape_def def = {.shape = SN_SHAPE_TUBE,
+                        .inner_radius = 0.01,
+                        .outer_radius = 0.012,
+                        .length = 0.004,
+                        .cells = {1, 12, 1}};
+    sn_case *c = body_case(&def, &t, SN_ELEMENT_P2P1);
+    defaults(c);
+    body_support(c, "bottom", false, false, true);
+    body_support(c, "top", false, false, true);
+    body_press(c, "inner", 5000, body_ramp(0, 1));
+    sn_run_summary s;
+    sn_record *r;
+    CHECK_OK(sn_record_create("balloon", &r));
+    CHECK_OK(sn_continuum_run(c, NULL, &s, r));
+    show("balloon", &s);
+    assert_false(s.converged);
+    assert_non_null(strstr(s.reason, "stopped at"));
+    assert_non_null(strstr(s.reason, "more than the body can carry"));
+    CHECK_ABS(sn_record_values(r, "time")[r->rows - 1], s.simulated_s, 1e-12);
+    sn_record_destroy(r);
+    sn_case_destroy(c);
+}
+
+// Two blocks in one mesh, one of which nothing holds.
+static sn_case *with_island(void) {
+    sn_tissue t = body_neo_hookean(3000, 15e3);
+    sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
+    sn_mesh *one = c->mesh, *two;
+    int nodes = one->node_count, cells = one->cell_count;
+    CHECK_OK(sn_mesh_create(2 * nodes, 2 * cells, 1, 1, &two));
+    for (int n = 0; n < 2 * nodes; n++)
+        for (int i = 0; i < 3; i++)
+            two->node[3 * n + i] =
+                one->node[3 * (n % nodes) + i] + (n >= nodes && i == 2 ? 0.02 : 0);
+    for (int n = 0; n < 8 * cells; n++)
+        two->cell[n] = one->cell[n % (4 * cells)] + (n >= 4 * cells ? nodes : 0);
+    snprintf(two->region_name[0], SN_NAME_MAX, "body");
+    const sn_surface *bottom = &one->surface[body_surface(c, "bottom")];
+    snprintf(two->surface[0].name, SN_NAME_MAX, "bottom");
+    two->surface[0].face_count = bottom->face_count;
+    two->surface[0].face = sn_alloc(3 * (size_t)bottom->face_count, sizeof(int));
+    memcpy(two->surface[0].face, bottom->face, 3 * (size_t)bottom->face_count * sizeof(int));
+    CHECK_OK(sn_mesh_finish(two));
+    sn_mesh_destroy(one);
+    c->mesh = two;
+    defaults(c);
+    body_support(c, "bottom", true, true, true);
+    return c;
+}
+
+static void island(void **state) {
+    (void)state;
+    sn_run_summary s;
+    sn_record *r;
+    sn_case *c = with_island();
+    c->gravity[2] = -9.81;
+    for (int e = 0; e < 3; e++)
+        for (int analysis = 0; analysis < 3; analysis += 2) {
+            CHECK_OK(sn_record_create("island", &r));
+            c->continuum.element = (sn_element)e;
+            c->continuum.analysis = (sn_analysis)analysis;
+            CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_DEFINITION, "hangs on nothing");
+            sn_record_destroy(r);
+        }
+    // with inertia it falls
+    c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
+    c->continuum.element = SN_ELEMENT_P1;
+    c->until = c->output_every = 0.02;
+    body_probe(c, "stone", 0.005, 0.005, 0.025);
+    r = body_run(c, NULL, &s);
+    CHECK_REL(body_last(r, "stone_uz"), -0.5 * 9.81 * 0.02 * 0.02, 1e-6);
+    sn_record_destroy(r);
+    sn_case_destroy(c);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(large_strain),          cmocka_unit_test(steep),
+        cmocka_unit_test(nearly_incompressible), cmocka_unit_test(thin_sheet),
+        cmocka_unit_test(limit_point),           cmocka_unit_test(island)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
