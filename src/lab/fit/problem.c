@@ -6,9 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// Steps of the model: level 1 is good to 1e-6 of the peak for the curves people record, and the
-// model is a smooth function of the constants because the steps do not depend on them.
-enum { LEVEL = 1 };
 static const double exponent_max = 40.0; // largest exponent that a bound of a pure number allows
 
 double sn_sum_squares(int n, const double *x) {
@@ -204,6 +201,7 @@ static sn_status add_curve(sn_problem *p, int k, const double *time) {
     sn_status status = sn_path_create(history, curve->count, time, &p->path[k]);
     sn_history_destroy(history);
     if (status != SN_OK) return sn_fail_within(status, "%s", curve->name);
+    p->slopes[k] = true;
     return SN_OK;
 }
 
@@ -329,6 +327,11 @@ void sn_problem_set(sn_problem *problem, const double *x) {
     }
 }
 
+sn_status sn_problem_curve(const sn_problem *p, int k, sn_pull pull, const sn_exponentials *e,
+                           double *stress) {
+    return sn_path_stress(p->path[k], &p->tissue, pull, e, SN_PROBLEM_LEVEL, stress);
+}
+
 // model stresses of the tissue as it stands
 static sn_status model_stress(sn_problem *p) {
     sn_exponentials e;
@@ -337,7 +340,7 @@ static sn_status model_stress(sn_problem *p) {
     SN_TRY(sn_memory_expand(&p->tissue.memory, &e));
     SN_TRY(sn_pull_choose(&p->tissue, &pull));
     for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
-        SN_TRY(sn_path_stress(p->path[k], &p->tissue, pull, &e, LEVEL, p->model + at));
+        SN_TRY(sn_problem_curve(p, k, pull, &e, p->model + at));
         at += p->def->curve[k].count;
     }
     return SN_OK;

@@ -16,6 +16,10 @@ typedef struct sn_fit_constant {
     char name[SN_NAME_MAX];
 } sn_fit_constant;
 
+/// Steps of the model: this level is good to 1e-6 of the peak for the curves people record, and the
+/// model is a smooth function of the constants because the steps do not depend on them.
+enum { SN_PROBLEM_LEVEL = 1 };
+
 /// Search points are in the scale of the fit: the logarithm where the table says so, else the
 /// value.
 typedef struct sn_problem {
@@ -28,6 +32,7 @@ typedef struct sn_problem {
     bool scalable;               ///< stress is proportional to the free constants that are stresses
     int points;                  ///< of all curves
     sn_path *path[SN_FIT_CURVES_MAX];
+    bool slopes[SN_FIT_CURVES_MAX];    ///< sn_path_slopes() holds for the curve; else differences
     double *measured, *weight, *model; ///< Pa, factor of a residual, Pa     (points)
     double norm;                       ///< weighted sum of squares of the measurements
     double peak;                       ///< largest |measured stress|
@@ -46,11 +51,18 @@ double sn_problem_scaled(const sn_fit_constant *constant, double value);
 double sn_problem_natural(const sn_fit_constant *constant, double scaled);
 /// Puts a search point into the tissue.
 void sn_problem_set(sn_problem *problem, const double *x);
+/// Model stresses of curve k, Pa, with the tissue as it stands.
+sn_status sn_problem_curve(const sn_problem *problem, int k, sn_pull pull, const sn_exponentials *e,
+                           double *stress);
 /// Weighted residuals (model - measured, Pa) at a search point. Where the constants break a
 /// condition or the stress is not finite they are all 1e3 times the measured norm: no search stays
 /// there.
 /// @return whether the point is feasible.
 bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual);
+/// Derivatives of the weighted residuals by the free constants, in the scale of the fit.
+/// @param jacobian  column of free constant j at [j * points]        (free_count x points)
+/// @return whether the point is feasible; else they are all 0.
+bool sn_problem_jacobian(sn_problem *problem, const double *x, double *jacobian);
 /// Sum of squares after the best common factor on the free stresses; that factor goes into x.
 double sn_problem_scaled_sum(sn_problem *problem, double *x, double *residual);
 /// Sum of squares of n numbers.
