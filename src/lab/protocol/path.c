@@ -135,14 +135,25 @@ sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull) {
     return SN_OK;
 }
 
+// stress of a step under a Voigt memory is an impulse: no number
+static sn_status check_step(const sn_path *path, const sn_tissue *tissue,
+                            const sn_exponentials *e) {
+    if (e->viscous == 0.0 || path->stretch[0] == 1.0) return SN_OK;
+    return sn_fail(SN_E_RANGE,
+                   "a step to stretch %g at %g s under memory %s has infinite stress: start at "
+                   "stretch 1 and use a ramp",
+                   path->stretch[0], path->time[0], tissue->memory.law->name);
+}
+
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress) {
-    // stress of a step under a Voigt memory is an impulse: no number
-    if (e->viscous > 0.0 && path->stretch[0] != 1.0)
-        return sn_fail(SN_E_RANGE,
-                       "a step to stretch %g at %g s under memory %s has infinite stress: start at "
-                       "stretch 1 and use a ramp",
-                       path->stretch[0], path->time[0], tissue->memory.law->name);
+    SN_TRY(check_step(path, tissue, e));
     if (pull == SN_PULL_LATERAL) return sn_path_stress_lateral(path, tissue, e, level, stress);
     return sn_path_stress_known(path, tissue, pull, e, level, stress);
+}
+
+sn_status sn_path_slopes(const sn_pulled *pulled, const sn_constants *by, double *slopes) {
+    SN_TRY(check_step(pulled->path, pulled->tissue, pulled->e));
+    if (pulled->pull == SN_PULL_LATERAL) return sn_path_slopes_lateral(pulled, by, slopes);
+    return sn_path_slopes_known(pulled, by, slopes);
 }

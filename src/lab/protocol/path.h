@@ -58,6 +58,29 @@ sn_status sn_pull_strip(const sn_tissue *tissue, int points, const double *stret
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress);
 
+/// What sn_path_stress() takes, in one.
+typedef struct sn_pulled {
+    const sn_path *path;
+    const sn_tissue *tissue;
+    sn_pull pull;
+    const sn_exponentials *e;
+    int level;
+} sn_pulled;
+/// Some constants of a tissue, by their places among the values of law and memory.
+typedef struct sn_constants {
+    int law_count, memory_count;
+    int law[SN_FIT_PARAMS_MAX], memory[SN_FIT_PARAMS_MAX];
+} sn_constants;
+
+/// Derivatives of sn_path_stress() by constants, those of the law first, each over its own unit.
+/// @param slopes  Pa over the unit of the constant    (law_count + memory_count) x records
+/// Not for SN_PULL_STRIP. @return as sn_path_stress().
+sn_status sn_path_slopes(const sn_pulled *pulled, const sn_constants *by, double *slopes);
+/// The part of sn_path_slopes() for SN_PULL_UNIAXIAL and SN_PULL_CLOSED.
+sn_status sn_path_slopes_known(const sn_pulled *pulled, const sn_constants *by, double *slopes);
+/// The part of sn_path_slopes() for SN_PULL_LATERAL.
+sn_status sn_path_slopes_lateral(const sn_pulled *pulled, const sn_constants *by, double *slopes);
+
 /// The part of sn_path_stress() for every way but SN_PULL_LATERAL: error of fourth order in
 /// the step, whatever the relaxation times.
 sn_status sn_path_stress_known(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
