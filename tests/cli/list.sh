@@ -54,14 +54,28 @@ machine --protocol cyclic --ramp "1 s" --cycles 2 --out cyclic.csv >test-3.json
 machine --protocol hysteresis --points 3 >test-4.json
 machine --protocol dynamic --points 3 >test-5.json
 "$SINEW" test u.yaml --protocol creep --stress "3 kPa" --hold "60 s" --json --out creep.csv >test-6.json
-"$SINEW" test t.yaml --protocol tensile --stretch 1.1 --json >test-7.json
+"$SINEW" test t.yaml --protocol tensile --stretch 1.1 --json --out soft.csv >test-7.json
 "$SINEW" test u.yaml --replay relaxation.csv --json >test-8.json
-for method in tensile cyclic relaxation creep; do
-    "$SINEW" analyze $method.csv --test $method --json >analyze-$method-1.json
+machine --protocol dynamic --out dynamic.csv >test-9.json
+"$SINEW" test t.yaml --protocol biaxial --stretch-1 1.2 --stretch-2 1.1 --json --out biaxial.csv >test-10.json
+awk 'BEGIN { print "time [s],stretch [1],stress [Pa]"
+    for (i = 0; i <= 200; i++) {
+        w = 6.283185307 * i / 20
+        printf "%g,%.9f,%.6f\n", i / 20, 1.05 + 0.01 * sin(w), 50 + 100 * sin(w + 0.1) + sin(2 * w)
+    } }' >sine.csv
+for method in tensile cyclic relaxation creep sine biaxial; do
+    sed '$p' $method.csv >repeated.csv # a row twice is a remark
+    "$SINEW" analyze repeated.csv --test $(echo $method | sed s/sine/dynamic/) --json >analyze-$method-1.json
 done
-"$SINEW" fit relaxation.csv tensile.csv --elastic exponential --memory prony --terms 2 --hold-out --json >fit-1.json
+"$SINEW" test u.yaml --protocol creep --stress "3 kPa" --hold "60 s" --recovery "0 s" --quiet --out held.csv
+"$SINEW" analyze held.csv --test creep --json >analyze-creep-2.json
+"$SINEW" analyze soft.csv --test tensile --json >analyze-tensile-2.json
+mv analyze-sine-1.json analyze-dynamic-2.json
+"$SINEW" analyze dynamic.csv --test dynamic --json >analyze-dynamic-1.json
+"$SINEW" fit relaxation.csv tensile.csv --elastic exponential --memory prony --terms auto:2 --hold-out --bootstrap 40 --json >fit-1.json
 # one direction does not determine two constants
 "$SINEW" fit tensile.csv --elastic mooney-rivlin --json >fit-2.json
+"$SINEW" fit biaxial.csv --elastic neo-hookean --json >fit-3.json
 "$SINEW" run c.yaml --engine springs --json >run-1.json
 "$SINEW" run c.yaml --engine continuum --json >run-2.json
 "$SINEW" compare c.yaml --json >compare-1.json
