@@ -42,10 +42,22 @@ static bool has_peak(const sn_series *series) {
 }
 
 // the memory as exponentials over the test, with the error that this costs
-static json_t *memory_json(const sn_tissue *tissue, double duration) {
+static json_t *exponentials_json(const sn_memory *memory, double duration) {
     sn_exponentials e;
-    bool done = sn_memory_compress(&tissue->memory, 1e-4 * duration, duration, 1e-3, &e) == SN_OK;
+    bool done = sn_memory_compress(memory, 1e-4 * duration, duration, 1e-3, &e) == SN_OK;
     return done ? cli_exponentials(&e) : json_null();
+}
+
+// of every part of the stress where these have a memory each
+static json_t *memory_json(const sn_tissue *tissue, double duration) {
+    static const char *const parts[SN_PARTS] = {"deviatoric", "volumetric", "fibre"};
+    if (!tissue->branched) return exponentials_json(&tissue->memory, duration);
+    json_t *json = json_object();
+    for (int k = 0; k < SN_PARTS; k++)
+        if (k != SN_PART_FIBRE || tissue->law->fibre_constant)
+            cli_put(json, parts[k],
+                    exponentials_json(sn_tissue_memory(tissue, (sn_part)k), duration));
+    return json;
 }
 
 static json_t *test_json(const sn_tissue *tissue, const sn_record *record,

@@ -176,6 +176,15 @@ sn_status sn_lab_creep(const sn_tissue *tissue, const sn_history *stress, int n,
                        "law %s: a creep test needs a uniaxial law, or an incompressible solid that "
                        "is alike across the pull (bulk_modulus: incompressible)",
                        tissue->law->name);
+    sn_moduli moduli;
+    sn_tissue part[2];
+    sn_tissue_moduli(tissue, &moduli);
+    if (tissue->branched && (!isinf(moduli.bulk) || sn_tissue_split(tissue, part) > 1))
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "law %s: a creep test with a branch memory needs an incompressible solid "
+                       "whose fibres relax as its matrix does: leave out the branches fibre and "
+                       "volumetric, or pull it instead",
+                       tissue->law->name);
     SN_TRY(sn_memory_expand(&tissue->memory, &e));
     sn_status status = SN_E_MEMORY;
     t = graded_times(stress, n, time, &count);

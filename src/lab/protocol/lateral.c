@@ -5,6 +5,9 @@
 // Compressible:    S = H[S_d] + H[K (J - 1)] J C^-1, both lateral stretches unknown.
 // Incompressible:  S = H[S_d] - p C^-1, J = 1; the sides differ (orthotropic laws), so one lateral
 //                  stretch is unknown and the condition is that both sides give the same p.
+// Where the memory is branched, S_d is two sums of channels, of the matrix and of the fibres, and
+// each kind of channel has its own H.
+//
 // The recursion for a step is affine in the new stress, H[S] = a S_new + b, so a trial of the
 // lateral stretches costs one evaluation of the law and touches no memory variable. Newton on the
 // logarithms of the stretches with differences for the 2 x 2 matrix: they need no tangent of the
@@ -15,20 +18,30 @@
 
 #include "lab/protocol/path.h"
 
-enum { CHANNELS = 4 }; // S11, S22, S33 distortional, and K (J - 1)
+// S11, S22, S33 distortional, K (J - 1), and S11, S22, S33 of fibres with a memory of their own
+enum { VOLUME = 3, FIBRES = 4, CHANNELS = 7 };
 static const int newton_max = 40;
 static const double difference = 1e-6; // of a logarithm: balances rounding against curvature
 
 typedef struct puller {
     const sn_tissue *tissue;
+    sn_tissue part[2]; // of the distortional stress
+    int parts, channels;
+    int memories; // 1, or SN_PARTS where branched
     const sn_exponentials *e;
     double bulk; // INFINITY: incompressible
     double time, stretch;
     double log_lateral[2];
     double value[CHANNELS];           // elastic, at the end of the last step
     double H[CHANNELS][SN_TERMS_MAX]; // shares of the exponentials
-    double a, b[CHANNELS];            // affine map of the step at hand
+    double a[CHANNELS], b[CHANNELS];  // affine map of the step at hand
 } puller;
+
+// which of the memories acts on a channel
+static int memory_of(const puller *p, int channel) {
+    if (p->memories == 1 || channel < VOLUME) return SN_PART_DEVIATORIC;
+    return channel == VOLUME ? SN_PART_VOLUMETRIC : SN_PART_FIBRE;
+}
 
 static int unknowns(const puller *p) {
     return isinf(p->bulk) ? 1 : 2;
@@ -43,7 +56,7 @@ static void lateral(const puller *p, double stretch, const double *y, double out
 // elastic channels and total stresses at n trials; residual (2 x n), axial nominal stress (n)
 static void trials(const puller *p, double stretch, int n, double y[][2], double value[][CHANNELS],
                    double residual[][2], double *nominal) {
-    double E[6 * 3] = {0}, S[6 * 3];
+    double E[6 * 3] = {0}, S[2][6 * 3];
     SN_ASSERT(n <= 3);
     for (int i = 0; i < n; ++i) {
         double side[2];
@@ -52,23 +65,28 @@ static void trials(const puller *p, double stretch, int n, double y[][2], double
         E[n + i] = 0.5 * (side[0] * side[0] - 1.0);
         E[2 * n + i] = 0.5 * (side[1] * side[1] - 1.0);
     }
-    sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, n, E, NULL, S, NULL);
+    for (int k = 0; k < p->parts; ++k)
+        sn_law_solid(p->tissue->law, p->part[k].value, p->tissue->terms, n, E, NULL, S[k], NULL);
     for (int i = 0; i < n; ++i) {
-        double side[2], total[CHANNELS];
+        double side[2], total[CHANNELS] = {0.0};
         lateral(p, stretch, y[i], side);
         double J = stretch * side[0] * side[1];
-        for (int c = 0; c < 3; ++c) value[i][c] = S[c * n + i];
-        value[i][3] = isinf(p->bulk) ? 0.0 : sn_volume_stress(p->bulk, J);
-        for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * value[i][c] + p->b[c];
+        for (int c = 0; c < 3; ++c) {
+            value[i][c] = S[0][c * n + i];
+            if (p->parts > 1) value[i][FIBRES + c] = S[1][c * n + i];
+        }
+        value[i][VOLUME] = isinf(p->bulk) ? 0.0 : sn_volume_stress(p->bulk, J);
+        for (int c = 0; c < p->channels; ++c) total[c] = p->a[c] * value[i][c] + p->b[c];
+        for (int c = FIBRES; c < p->channels; ++c) total[c - FIBRES] += total[c];
         double s22 = total[1] * side[0] * side[0], s33 = total[2] * side[1] * side[1];
         if (isinf(p->bulk)) {
             residual[i][0] = s22 - s33;
             residual[i][1] = 0.0;
             nominal[i] = stretch * total[0] - s33 / stretch;
         } else {
-            residual[i][0] = s22 + total[3] * J;
-            residual[i][1] = s33 + total[3] * J;
-            nominal[i] = stretch * total[0] + total[3] * J / stretch;
+            residual[i][0] = s22 + total[VOLUME] * J;
+            residual[i][1] = s33 + total[VOLUME] * J;
+            nominal[i] = stretch * total[0] + total[VOLUME] * J / stretch;
         }
     }
 }
@@ -107,7 +125,7 @@ static sn_status solve_sides(puller *p, double stretch, double value[CHANNELS], 
         if (size > 1e-11) continue; // the matrix is good to 1e-6: what remains is 1e-17
         trials(p, stretch, 1, y, values, residual, stress);
         memcpy(p->log_lateral, y[0], sizeof y[0]);
-        memcpy(value, values[0], sizeof values[0]);
+        memcpy(value, values[0], (size_t)p->channels * sizeof *value);
         *nominal = stress[0];
         return SN_OK;
     }
@@ -118,38 +136,45 @@ static sn_status solve_sides(puller *p, double stretch, double value[CHANNELS], 
 }
 
 static sn_status start(puller *p, const sn_path *path, double *nominal) {
-    const sn_exponentials *e = p->e;
     double guess = -0.5 * log(path->stretch[0]), value[CHANNELS];
     p->time = path->time[0];
     p->stretch = path->stretch[0];
     p->log_lateral[0] = p->log_lateral[1] = guess;
-    p->a = 1.0; // a step from rest: G(0) = 1
+    for (int c = 0; c < p->channels; ++c) p->a[c] = 1.0; // a step from rest: G(0) = 1
     SN_TRY(solve_sides(p, p->stretch, value, nominal));
-    for (int c = 0; c < CHANNELS; ++c) {
+    for (int c = 0; c < p->channels; ++c) {
         p->value[c] = value[c];
+        const sn_exponentials *e = &p->e[memory_of(p, c)];
         for (int i = 0; i < e->terms; ++i) p->H[c][i] = e->g[i] * value[c];
     }
     return SN_OK;
 }
 
 static sn_status step(puller *p, double time, double stretch, double *nominal) {
-    const sn_exponentials *e = p->e;
-    double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX], value[CHANNELS];
-    double h = time - p->time, viscous = e->viscous / h;
-    sn_exponentials_factors(e, h, decay, gain);
-    p->a = e->g_inf + viscous;
-    for (int i = 0; i < e->terms; ++i) p->a += gain[i];
-    for (int c = 0; c < CHANNELS; ++c) {
+    double decay[SN_PARTS][SN_TERMS_MAX], gain[SN_PARTS][SN_TERMS_MAX], value[CHANNELS];
+    double h = time - p->time;
+    for (int m = 0; m < p->memories; ++m) sn_exponentials_factors(&p->e[m], h, decay[m], gain[m]);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        const sn_exponentials *e = &p->e[m];
+        const double *d = decay[m], *g = gain[m];
+        double viscous = e->viscous / h;
+        p->a[c] = e->g_inf + viscous;
         p->b[c] = -viscous * p->value[c];
-        for (int i = 0; i < e->terms; ++i) p->b[c] += decay[i] * p->H[c][i] - gain[i] * p->value[c];
+        for (int i = 0; i < e->terms; ++i) {
+            p->a[c] += g[i];
+            p->b[c] += d[i] * p->H[c][i] - g[i] * p->value[c];
+        }
     }
     double guess = log(stretch / p->stretch);
     for (int j = 0; j < 2; ++j) p->log_lateral[j] -= 0.5 * guess;
     p->time = time;
     SN_TRY(solve_sides(p, stretch, value, nominal));
-    for (int c = 0; c < CHANNELS; ++c) {
-        for (int i = 0; i < e->terms; ++i)
-            p->H[c][i] = decay[i] * p->H[c][i] + gain[i] * (value[c] - p->value[c]);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        const double *d = decay[m], *g = gain[m];
+        for (int i = 0; i < p->e[m].terms; ++i)
+            p->H[c][i] = d[i] * p->H[c][i] + g[i] * (value[c] - p->value[c]);
         p->value[c] = value[c];
     }
     p->stretch = stretch;
@@ -174,6 +199,9 @@ sn_status sn_path_stress_lateral(const sn_path *path, const sn_tissue *tissue,
     sn_moduli moduli;
     tissue->law->moduli(tissue->value, tissue->terms, &moduli);
     puller p = {.tissue = tissue, .e = e, .bulk = moduli.bulk};
+    p.parts = sn_tissue_split(tissue, p.part);
+    p.channels = p.parts > 1 ? CHANNELS : FIBRES;
+    p.memories = tissue->branched ? SN_PARTS : 1;
     double *at_instant = sn_alloc((size_t)path->count, sizeof *at_instant);
     if (!at_instant) return SN_E_MEMORY;
     sn_status status = start(&p, path, &at_instant[0]);

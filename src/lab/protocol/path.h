@@ -14,6 +14,7 @@ typedef struct sn_path {
     int records;     ///< number of recorded times
     int *record;     ///< instant of each; -1: before the start        (records)
     double range;    ///< largest less smallest stretch, rest included
+    double rest;     ///< where nothing is stressed
 } sn_path;
 
 /// Lays out a test that is driven by one number, `rest` before it starts.
@@ -35,6 +36,10 @@ typedef enum sn_pull {
 /// Chooses the way. @return SN_OK, SN_E_UNSUPPORTED (membrane law; shear under a pull), SN_E_RANGE.
 sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull);
 
+/// The memory of every part of a tissue as exponentials; all the same where it is not branched.
+/// @param viscous  whether any of them has a viscous part (Voigt). @return SN_OK, SN_E_RANGE.
+sn_status sn_path_memory(const sn_tissue *tissue, sn_exponentials e[SN_PARTS], bool *viscous);
+
 /// Elastic channels S11 and S22 of SN_PULL_CLOSED, Pa, with their slopes over the stretch.
 /// @param value, slope  (2 x points). @return SN_OK or SN_E_MEMORY.
 sn_status sn_pull_closed(const sn_tissue *tissue, int points, const double *stretch, double *value,
@@ -42,7 +47,7 @@ sn_status sn_pull_closed(const sn_tissue *tissue, int points, const double *stre
 
 /// Nominal stress, Pa, at the recorded times, with `level` times the coarsest steps. A smooth
 /// function of the tissue's constants at a given level, as a fit needs it.
-/// @param e  the tissue's memory as exponentials
+/// @param e  the tissue's memory as exponentials; where it is branched, of every part  (SN_PARTS)
 /// @return SN_OK, SN_E_RANGE (a step under a Voigt memory), SN_E_SOLVER (lateral), SN_E_MEMORY.
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress);

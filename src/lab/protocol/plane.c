@@ -20,7 +20,7 @@ typedef struct plane {
     bool shear;
     double target[2]; // stretches, or the shear strain
     const sn_path *path;
-    const sn_exponentials *e;
+    const sn_exponentials *e; // of every part of the stress; of the one at hand in add_stress()
 } plane;
 
 // stretches at u, the third the thickness
@@ -86,9 +86,8 @@ static sn_status fill(const void *context, int count, const double *x, double *v
     return SN_OK;
 }
 
-// nominal stresses at the recorded times: T_12 (n), or T_1 then T_2 (2 x n)
-static sn_status stress_at_level(const void *context, int level, double *stress) {
-    const plane *p = context;
+// adds the nominal stresses at the recorded times: T_12 (n), or T_1 then T_2 (2 x n)
+static sn_status add_stress(const plane *p, int level, double *stress) {
     const sn_path *path = p->path;
     sn_channels of = {p->shear ? 2 : 3, p, fill};
     double *out = sn_alloc((size_t)(path->count * of.count), sizeof *out);
@@ -98,11 +97,11 @@ static sn_status stress_at_level(const void *context, int level, double *stress)
         double u = path->stretch[path->record[r]], l[3], second = 0.0;
         const double *H = out + path->record[r] * of.count;
         if (p->shear) {
-            stress[r] = H[0] + p->target[0] * u * H[1];
+            stress[r] += H[0] + p->target[0] * u * H[1];
         } else {
             stretches_at(p, u, l);
-            stress[r] = l[0] * H[0] - l[2] * l[2] * H[2] / l[0];
-            second = stress[path->records + r] = l[1] * H[1] - l[2] * l[2] * H[2] / l[1];
+            stress[r] += l[0] * H[0] - l[2] * l[2] * H[2] / l[0];
+            second = stress[path->records + r] += l[1] * H[1] - l[2] * l[2] * H[2] / l[1];
         }
         if (!isfinite(stress[r]) || !isfinite(second))
             status = sn_fail(SN_E_RANGE, "law %s overflows %g s into the test: check the constants",
@@ -110,6 +109,21 @@ static sn_status stress_at_level(const void *context, int level, double *stress)
     }
     sn_free(out);
     return status;
+}
+
+// the nominal stress is a sum over the parts of the elastic stress, each with its memory
+static sn_status stress_at_level(const void *context, int level, double *stress) {
+    const plane *whole = context;
+    sn_tissue part[2];
+    int parts = sn_tissue_split(whole->tissue, part), columns = whole->shear ? 1 : 2;
+    for (int i = 0; i < columns * whole->path->records; ++i) stress[i] = 0.0;
+    for (int k = 0; k < parts; ++k) {
+        plane p = *whole;
+        p.tissue = &part[k];
+        p.e = &whole->e[k == 0 ? SN_PART_DEVIATORIC : SN_PART_FIBRE];
+        SN_TRY(add_stress(&p, level, stress));
+    }
+    return SN_OK;
 }
 
 static sn_status check(const sn_tissue *tissue, const sn_protocol *p) {
@@ -148,9 +162,10 @@ static sn_status fill_record(const plane *p, int n, const double *time, const do
 
 sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *protocol, sn_record *record) {
     SN_TRY(check(tissue, protocol));
-    sn_exponentials e;
-    SN_TRY(sn_memory_expand(&tissue->memory, &e));
-    plane p = {.tissue = tissue, .shear = protocol->kind == SN_PROTOCOL_SHEAR, .e = &e};
+    sn_exponentials e[SN_PARTS];
+    bool viscous;
+    SN_TRY(sn_path_memory(tissue, e, &viscous));
+    plane p = {.tissue = tissue, .shear = protocol->kind == SN_PROTOCOL_SHEAR, .e = e};
     p.target[0] = p.shear ? protocol->shear : protocol->stretch_1;
     p.target[1] = p.shear ? 1.0 : protocol->stretch_2;
     const double knots[] = {0.0, protocol->ramp}, drive[] = {0.0, 1.0};

@@ -56,7 +56,9 @@ typedef struct leg_work {
 static sn_status hysteresis_at(const sn_tissue *tissue, double target, double ramp, int cuts,
                                leg_work *work, double *hysteresis) {
     const double knots[] = {0.0, ramp, 2.0 * ramp}, value[] = {1.0, target, 1.0};
-    int panels = tissue->memory.law->impulse ? PANELS_VISCOUS : PANELS;
+    int panels = PANELS;
+    for (int k = 0; k < SN_PARTS; ++k)
+        if (sn_tissue_memory(tissue, (sn_part)k)->law->impulse) panels = PANELS_VISCOUS;
     int n = leg_nodes(panels, cuts, work->node, work->weight);
     for (int i = 0; i < n; ++i) {
         work->time[i] = ramp * work->node[i];
@@ -99,7 +101,7 @@ static sn_status hysteresis_refined(const sn_tissue *tissue, double target, doub
 sn_status sn_test_hysteresis(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
     double *ramp;
     leg_work work = {NULL, NULL, NULL, NULL};
-    SN_TRY(sn_memory_check(&tissue->memory));
+    SN_TRY(sn_tissue_check(tissue));
     SN_TRY(sn_protocol_sweep(p, &ramp));
     size_t n = (size_t)(PANELS * NODES) << (CUTS - 1); // nodes of a leg at the most
     sn_status status = SN_E_MEMORY;
@@ -133,9 +135,7 @@ typedef struct tangent {
     double moving, held;
 } tangent;
 
-static sn_status tangent_at(const sn_tissue *tissue, double L, tangent *out) {
-    sn_pull pull;
-    SN_TRY(sn_pull_choose(tissue, &pull));
+static sn_status tangent_at(const sn_tissue *tissue, sn_pull pull, double L, tangent *out) {
     *out = (tangent){0.0, 0.0};
     if (pull == SN_PULL_LATERAL)
         return sn_fail(SN_E_UNSUPPORTED,
@@ -157,19 +157,27 @@ static sn_status tangent_at(const sn_tissue *tissue, double L, tangent *out) {
 }
 
 sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
-    tangent slope;
+    tangent slope[2];
+    sn_tissue part[2]; // each with its memory
+    sn_pull pull;
     double *frequency;
     SN_TRY(sn_protocol_sweep(p, &frequency));
     sn_status status;
-    SN_TRY_GOTO(status, sn_memory_check(&tissue->memory));
-    SN_TRY_GOTO(status, tangent_at(tissue, p->stretch, &slope));
+    SN_TRY_GOTO(status, sn_tissue_check(tissue));
+    SN_TRY_GOTO(status, sn_pull_choose(tissue, &pull));
+    int parts = sn_tissue_split(tissue, part);
+    for (int k = 0; k < parts; ++k)
+        SN_TRY_GOTO(status, tangent_at(&part[k], pull, p->stretch, &slope[k]));
     SN_TRY_GOTO(status, sn_record_add_series(record, "frequency", "Hz"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "storage_modulus", "Pa"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "loss_modulus", "Pa"));
     for (int i = 0; i < p->points; ++i) {
-        double storage, loss;
-        sn_memory_modulus(&tissue->memory, two_pi * frequency[i], &storage, &loss);
-        double row[] = {frequency[i], storage * slope.moving + slope.held, loss * slope.moving};
+        double storage, loss, row[] = {frequency[i], 0.0, 0.0};
+        for (int k = 0; k < parts; ++k) {
+            sn_memory_modulus(&part[k].memory, two_pi * frequency[i], &storage, &loss);
+            row[1] += storage * slope[k].moving + slope[k].held;
+            row[2] += loss * slope[k].moving;
+        }
         SN_TRY_GOTO(status, sn_record_append(record, row));
     }
 fail:
