@@ -39,6 +39,9 @@ typedef struct sn_law {
     const char *source; ///< equation of the paper, or the publication
     sn_law_kind kind;
     bool fibres; ///< strains are expected in axes of the material, the first of them the fibre's
+    /// Nullable: the constant, in pascals, that the energy of the fibres is proportional to and
+    /// that stands nowhere else; what is left with it at 0 is the matrix.
+    const char *fibre_constant;
     int param_count;
     const sn_param *params;
     /// Nullable: conditions beyond the table's ranges (convexity); stores a text.

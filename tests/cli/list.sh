@@ -38,6 +38,15 @@ tissue: u
 elastic: {law: exponential, B: 10, C: 5 kPa}
 memory: {law: prony, g: [0.3, 0.2], tau: [50 ms, 5 s]}
 Y
+cat >b.yaml <<'Y'
+tissue: b
+elastic: {law: hgo, mu: 3 kPa, k1: 2 kPa, k2: 1, kappa: 0.1, angle: 30 deg, bulk_modulus: 30 kPa}
+memory:
+  branch:
+    deviatoric: {law: prony, g: [0.3], tau: [0.1 s]}
+    volumetric: {law: prony, g: [0.2], tau: [0.3 s]}
+    fibre: {law: prony, g: [0.1], tau: [2 s]}
+Y
 cat >c.yaml <<'Y'
 case: c
 mesh: {block: {size: [10 mm, 10 mm, 10 mm], cells: [2, 2, 2]}}
@@ -56,6 +65,8 @@ machine --protocol dynamic --points 3 >test-5.json
 "$SINEW" test u.yaml --protocol creep --stress "3 kPa" --hold "60 s" --json --out creep.csv >test-6.json
 "$SINEW" test t.yaml --protocol tensile --stretch 1.1 --json --out soft.csv >test-7.json
 "$SINEW" test u.yaml --replay relaxation.csv --json >test-8.json
+"$SINEW" test b.yaml --protocol tensile --stretch 1.1 --json --report b.html >test-11.json
+[ "$(grep -c 'Reduced relaxation function' b.html)" -ge 3 ] || die "a memory for each part has its plot"
 machine --protocol dynamic --out dynamic.csv >test-9.json
 "$SINEW" test t.yaml --protocol biaxial --stretch-1 1.2 --stretch-2 1.1 --json --out biaxial.csv >test-10.json
 awk 'BEGIN { print "time [s],stretch [1],stress [Pa]"

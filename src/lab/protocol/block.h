@@ -4,29 +4,33 @@
 
 #include "lab/protocol/path.h"
 
-/// Channels: S11, S22, S33 distortional, and K (J - 1).
-enum { SN_BLOCK_VOLUME = 3, SN_BLOCK_CHANNELS = 4 };
+/// Channels: S11, S22, S33 distortional, K (J - 1), and S11, S22, S33 of fibres with a memory of
+/// their own.
+enum { SN_BLOCK_VOLUME = 3, SN_BLOCK_FIBRES = 4, SN_BLOCK_CHANNELS = 7 };
 
 typedef struct sn_block_slopes sn_block_slopes;
 
 typedef struct sn_block {
     const sn_tissue *tissue;
+    sn_tissue part[2]; ///< of the distortional stress (sn_tissue_split)
+    int parts, channels;
+    int memories; ///< 1, or SN_PARTS where branched
     const sn_faces *faces;
-    const sn_exponentials *e;
+    const sn_exponentials *e;                  ///< (memories)
     double bulk;                               ///< INFINITY: incompressible
     int unknowns, unknown[3];                  ///< faces whose stretch is solved for
     double time, target[3];                    ///< stretches of held faces, loads of the others, Pa
     double y[3];                               ///< logarithms of the stretches
     double value[SN_BLOCK_CHANNELS];           ///< elastic, at the end of the last step
     double H[SN_BLOCK_CHANNELS][SN_TERMS_MAX]; ///< shares of the exponentials
-    double a, b[SN_BLOCK_CHANNELS];            ///< affine map of the step at hand
-    sn_block_slopes *slopes;                   ///< Nullable
+    double a[SN_BLOCK_CHANNELS], b[SN_BLOCK_CHANNELS]; ///< affine map of the step at hand
+    sn_block_slopes *slopes;                           ///< Nullable; not of a branched tissue
 } sn_block;
 
 /// A trial of the stretches and what comes of it.
 typedef struct sn_block_trial {
     double y[3];
-    double value[SN_BLOCK_CHANNELS]; ///< elastic channels
+    double value[SN_BLOCK_CHANNELS]; ///< elastic channels; of fibres only where there are any
     double stretch[3], nominal[3];
     double residual[3]; ///< of the unknown faces, times their stretch
 } sn_block_trial;
@@ -45,6 +49,6 @@ void sn_solve_small(int n, double A[3][3], const double *r, double *x);
 void sn_block_slopes_start(sn_block *block, const sn_block_trial *now);
 /// Derivatives at the end of a step of h seconds, at its equilibrium; value and H of the block are
 /// still those of its start.
-/// @param decay, gain  sn_exponentials_factors() of the step
+/// @param decay, gain  sn_exponentials_factors() of the step and the only memory
 void sn_block_slopes_step(sn_block *block, double h, const double *decay, const double *gain,
                           const sn_block_trial *now);

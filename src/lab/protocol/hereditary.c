@@ -94,11 +94,24 @@ static bool same_step(double h, double last, double time) {
     return fabs(h - last) <= 4.0 * DBL_EPSILON * fabs(time);
 }
 
-// equal parts of the interval between instants k and k + 1
+// Equal parts of the interval between instants k and k + 1: `level` times those of level 1, so that
+// two levels that agree say something.
 static int parts_of(const sn_path *path, int k, int level) {
     double change = fabs(path->stretch[k + 1] - path->stretch[k]);
     if (change == 0.0) return 1;
-    return (int)fmax(1.0, ceil(level * steps_over_range * change / path->range));
+    return level * (int)fmax(1.0, ceil(steps_over_range * change / path->range));
+}
+
+// Fibres carry from rest on, so that a law's slope may jump there; the one wanted is that on the
+// side of the motion, which is looked up `beside` rest. Values at rest are 0.
+static void step_beside(const sn_path *path, double beside, channels *c) {
+    for (int i = 0; i < c->points; ++i) {
+        if (c->x[i] != path->rest) continue;
+        double before = i > 0 ? c->x[i - 1] - path->rest : 0.0;
+        double after = i + 1 < c->points ? c->x[i + 1] - path->rest : 0.0;
+        double side = fabs(before) > beside ? before : after;
+        if (side != 0.0) c->x[i] += copysign(beside, side);
+    }
 }
 
 // the points of all intervals one after the other: start, then middle and end of every part
@@ -121,8 +134,13 @@ static sn_status channels_create(const sn_path *path, const sn_channels *of, int
         for (int j = 1; j <= 2 * parts; ++j)
             c->x[at++] = j == 2 * parts ? path->stretch[k + 1] : path->stretch[k] + step * j;
     }
+    double beside = 1e-9 * path->range;
+    step_beside(path, beside, c);
     sn_status status = of->fill(of->context, c->points, c->x, c->value[0], c->slope[0]);
     if (status != SN_OK) sn_free(c->block);
+    for (int i = 0; status == SN_OK && i < c->points; ++i)
+        if (c->x[i] == path->rest + beside || c->x[i] == path->rest - beside)
+            for (int a = 0; a < c->count; ++a) c->value[a][i] = 0.0;
     return status;
 }
 

@@ -8,7 +8,8 @@
 // Incompressible, l3 = 1/(l1 l2), the third face always free of load:
 //     T_i = l_i H[S_ii] - p/l_i,  p = l3^2 H[S_33]
 // (pulled along one axis the sides of an orthotropic law differ, and that both give the same p is
-// the condition for l2).
+// the condition for l2). Where the memory is branched, the H of each kind of channel is its own;
+// and where fibres have another memory than the matrix, S_ii is a sum of two channels.
 //
 // The recursion for a step is affine in the new stress, H[S] = a S_new + b, so a trial of the
 // stretches costs one evaluation of the law and touches no memory variable. Newton on the
@@ -19,9 +20,20 @@
 
 #include "lab/protocol/block.h"
 
-enum { VOLUME = SN_BLOCK_VOLUME, CHANNELS = SN_BLOCK_CHANNELS, TRIALS = 4 };
+enum {
+    VOLUME = SN_BLOCK_VOLUME,
+    FIBRES = SN_BLOCK_FIBRES,
+    CHANNELS = SN_BLOCK_CHANNELS,
+    TRIALS = 4
+};
 static const int newton_max = 100;
 static const double difference = 1e-6; // of a logarithm: balances rounding against curvature
+
+// which of the memories acts on a channel
+static int memory_of(const sn_block *p, int channel) {
+    if (p->memories == 1 || channel < VOLUME) return SN_PART_DEVIATORIC;
+    return channel == VOLUME ? SN_PART_VOLUMETRIC : SN_PART_FIBRE;
+}
 
 static void stretches_of(const sn_block *p, sn_block_trial *t) {
     for (int i = 0; i < 3; ++i) t->stretch[i] = p->faces->held[i] ? p->target[i] : exp(t->y[i]);
@@ -30,7 +42,7 @@ static void stretches_of(const sn_block *p, sn_block_trial *t) {
 
 // elastic channels, total stresses and residuals at n trials
 static void evaluate(const sn_block *p, int n, sn_block_trial *t) {
-    double E[6 * TRIALS] = {0}, S[6 * TRIALS];
+    double E[6 * TRIALS] = {0}, S[2][6 * TRIALS];
     SN_ASSERT(n <= TRIALS);
     for (int i = 0; i < n; ++i) {
         stretches_of(p, &t[i]);
@@ -39,15 +51,18 @@ static void evaluate(const sn_block *p, int n, sn_block_trial *t) {
             E[c * n + i] = 0.5 * (l - 1.0) * (l + 1.0);
         }
     }
-    sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, n, E, NULL, S, NULL);
+    for (int k = 0; k < p->parts; ++k)
+        sn_law_solid(p->tissue->law, p->part[k].value, p->tissue->terms, n, E, NULL, S[k], NULL);
     for (int i = 0; i < n; ++i) {
         const double *l = t[i].stretch;
-        double J = l[0] * l[1] * l[2], total[CHANNELS];
-        for (int c = 0; c < 3; ++c) t[i].value[c] = S[c * n + i];
+        double J = l[0] * l[1] * l[2], total[CHANNELS] = {0.0};
+        for (int k = 0; k < p->parts; ++k)
+            for (int c = 0; c < 3; ++c) t[i].value[(k ? FIBRES : 0) + c] = S[k][c * n + i];
         // U'(J) = K (J - 1) from the logarithm of J: J - 1 itself drowns the rates of stiff solids
         double log_volume = t[i].y[0] + t[i].y[1] + t[i].y[2];
         t[i].value[VOLUME] = isinf(p->bulk) ? 0.0 : p->bulk * expm1(log_volume);
-        for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * t[i].value[c] + p->b[c];
+        for (int c = 0; c < p->channels; ++c) total[c] = p->a[c] * t[i].value[c] + p->b[c];
+        for (int c = FIBRES; c < p->channels; ++c) total[c - FIBRES] += total[c];
         double pressure = isinf(p->bulk) ? l[2] * l[2] * total[2] : -total[VOLUME] * J;
         for (int c = 0; c < 3; ++c) t[i].nominal[c] = l[c] * total[c] - pressure / l[c];
         for (int j = 0; j < p->unknowns; ++j) {
@@ -153,15 +168,17 @@ static void keep(const sn_block_trial *t, sn_block_row *row) {
 }
 
 sn_status sn_block_start(sn_block *p, const sn_path *path, sn_block_row *row) {
-    const sn_exponentials *e = p->e;
     sn_block_trial now;
+    bool viscous = false;
+    for (int m = 0; m < p->memories; ++m) viscous = viscous || p->e[m].viscous > 0.0;
     p->time = path->time[0];
     drive(p, path->stretch[0]);
-    for (int i = 0; i < 3 && e->viscous > 0.0; ++i) // a dashpot holds against a jump of the load
+    for (int i = 0; i < 3 && viscous; ++i) // a dashpot holds against a jump of the load
         if (!p->faces->held[i]) p->target[i] = 0.0;
-    p->a = 1.0; // a step from rest: G(0) = 1
+    for (int c = 0; c < p->channels; ++c) p->a[c] = 1.0; // a step from rest: G(0) = 1
     SN_TRY(solve(p, &now));
-    for (int c = 0; c < CHANNELS; ++c) {
+    for (int c = 0; c < p->channels; ++c) {
+        const sn_exponentials *e = &p->e[memory_of(p, c)];
         p->value[c] = now.value[c];
         for (int i = 0; i < e->terms; ++i) p->H[c][i] = e->g[i] * now.value[c];
     }
@@ -171,24 +188,29 @@ sn_status sn_block_start(sn_block *p, const sn_path *path, sn_block_row *row) {
 }
 
 static sn_status step(sn_block *p, double time, double u, sn_block_row *row) {
-    const sn_exponentials *e = p->e;
-    double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX];
-    double h = time - p->time, viscous = e->viscous / h;
+    double decay[SN_PARTS][SN_TERMS_MAX], gain[SN_PARTS][SN_TERMS_MAX], h = time - p->time;
     sn_block_trial now;
-    sn_exponentials_factors(e, h, decay, gain);
-    p->a = e->g_inf + viscous;
-    for (int i = 0; i < e->terms; ++i) p->a += gain[i];
-    for (int c = 0; c < CHANNELS; ++c) {
+    for (int m = 0; m < p->memories; ++m) sn_exponentials_factors(&p->e[m], h, decay[m], gain[m]);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        const double *d = decay[m], *g = gain[m];
+        double viscous = p->e[m].viscous / h;
+        p->a[c] = p->e[m].g_inf + viscous;
         p->b[c] = -viscous * p->value[c];
-        for (int i = 0; i < e->terms; ++i) p->b[c] += decay[i] * p->H[c][i] - gain[i] * p->value[c];
+        for (int i = 0; i < p->e[m].terms; ++i) {
+            p->a[c] += g[i];
+            p->b[c] += d[i] * p->H[c][i] - g[i] * p->value[c];
+        }
     }
     p->time = time;
     drive(p, u);
     SN_TRY(solve(p, &now));
-    if (p->slopes) sn_block_slopes_step(p, h, decay, gain, &now);
-    for (int c = 0; c < CHANNELS; ++c) {
-        for (int i = 0; i < e->terms; ++i)
-            p->H[c][i] = decay[i] * p->H[c][i] + gain[i] * (now.value[c] - p->value[c]);
+    if (p->slopes) sn_block_slopes_step(p, h, decay[0], gain[0], &now);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        double change = now.value[c] - p->value[c];
+        for (int i = 0; i < p->e[m].terms; ++i)
+            p->H[c][i] = decay[m][i] * p->H[c][i] + gain[m][i] * change;
         p->value[c] = now.value[c];
     }
     keep(&now, row);
@@ -227,6 +249,9 @@ sn_block sn_block_of(const sn_tissue *tissue, const sn_faces *faces, const sn_ex
     sn_block p = {.tissue = tissue, .faces = faces, .e = e, .bulk = moduli.bulk};
     for (int i = 0; i < (isinf(moduli.bulk) ? 2 : 3); ++i)
         if (!faces->held[i]) p.unknown[p.unknowns++] = i;
+    p.parts = sn_tissue_split(tissue, p.part);
+    p.channels = p.parts > 1 ? CHANNELS : FIBRES;
+    p.memories = tissue->branched ? SN_PARTS : 1;
     return p;
 }
 
@@ -236,6 +261,17 @@ sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_f
     SN_TRY(sn_block_start(&p, path, &row[0]));
     for (int k = 0; k + 1 < path->count; ++k)
         SN_TRY(sn_block_cross(&p, path, k, level, &row[k + 1]));
+    return SN_OK;
+}
+
+sn_status sn_path_held(const sn_tissue *tissue, const sn_exponentials *e, double stretch,
+                       sn_block_row *row) {
+    sn_block p = sn_block_of(tissue, &sn_faces_pulled, e);
+    sn_block_trial now;
+    for (int c = 0; c < p.channels; ++c) p.a[c] = p.memories > 1 ? e[memory_of(&p, c)].g_inf : 1.0;
+    drive(&p, stretch);
+    SN_TRY(solve(&p, &now));
+    keep(&now, row);
     return SN_OK;
 }
 

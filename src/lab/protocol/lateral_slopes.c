@@ -11,7 +11,7 @@
 
 #include "lab/protocol/block.h"
 
-enum { VOLUME = SN_BLOCK_VOLUME, CHANNELS = SN_BLOCK_CHANNELS };
+enum { VOLUME = SN_BLOCK_VOLUME, CHANNELS = SN_BLOCK_FIBRES }; // one memory: no fibres apart
 
 // derivatives of what a block holds by every constant
 struct sn_block_slopes {
@@ -36,7 +36,7 @@ typedef struct sides {
 // R_c = l_c^2 S_c - p, less the load times l_c, which is 0 on free sides; p = l3^2 S_3 or -J S_v
 static void sides_at(const sn_block *p, const sn_block_trial *now, sides *s) {
     static const int place[3][3] = {{0, 1, 2}, {1, 6, 7}, {2, 7, 11}}; // upper triangle by rows
-    double E[6] = {0}, D[21], total[CHANNELS];
+    double E[6] = {0}, D[21], total[CHANNELS], a = p->a[0];
     bool closed = isinf(p->bulk);
     *s = (sides){.J = now->stretch[0] * now->stretch[1] * now->stretch[2]};
     for (int i = 0; i < 3; ++i) {
@@ -45,7 +45,7 @@ static void sides_at(const sn_block *p, const sn_block_trial *now, sides *s) {
         E[i] = 0.5 * (s->l[i] - 1.0) * (s->l[i] + 1.0);
     }
     sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, 1, E, NULL, NULL, D);
-    for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * now->value[c] + p->b[c];
+    for (int c = 0; c < CHANNELS; ++c) total[c] = a * now->value[c] + p->b[c];
     for (int j = 0; j < p->unknowns; ++j) {
         double move[3] = {0.0}; // of the logarithms of all stretches
         move[p->unknown[j]] = 1.0;
@@ -53,14 +53,14 @@ static void sides_at(const sn_block *p, const sn_block_trial *now, sides *s) {
         for (int c = 0; c < 3; ++c)
             for (int i = 0; i < 3; ++i) s->value[c][j] += D[place[c][i]] * s->square[i] * move[i];
         s->value[VOLUME][j] = closed ? 0.0 : p->bulk * s->J;
-        double pressure = closed ? (p->a * s->value[2][j] + 2.0 * total[2] * move[2]) * s->square[2]
-                                 : -(p->a * s->value[VOLUME][j] + total[VOLUME]) * s->J;
+        double pressure = closed ? (a * s->value[2][j] + 2.0 * total[2] * move[2]) * s->square[2]
+                                 : -(a * s->value[VOLUME][j] + total[VOLUME]) * s->J;
         for (int i = 0; i < p->unknowns; ++i) {
             int c = p->unknown[i];
             s->residual[i][j] =
-                (p->a * s->value[c][j] + 2.0 * total[c] * move[c]) * s->square[c] - pressure;
+                (a * s->value[c][j] + 2.0 * total[c] * move[c]) * s->square[c] - pressure;
         }
-        s->nominal[j] = s->l[0] * p->a * s->value[0][j] - pressure / s->l[0];
+        s->nominal[j] = s->l[0] * a * s->value[0][j] - pressure / s->l[0];
     }
 }
 
@@ -97,7 +97,7 @@ static void slopes_solve(sn_block *p, const sn_block_trial *now) {
             if (k < d->by->law_count)
                 d->value[k][c] = c < VOLUME ? d->dS[d->by->law[k] * 6 + c]
                                             : d->bulk[k] * now->value[VOLUME] / p->bulk;
-            dS[c] = p->a * d->value[k][c] + d->fixed[k][c];
+            dS[c] = p->a[c] * d->value[k][c] + d->fixed[k][c];
         }
         follow_sides(p, &s, dS, d->value[k], &d->nominal[k]);
     }
@@ -114,7 +114,7 @@ static void memory_part(sn_block *p, int k, double h, const double value[CHANNEL
         double change = value[c] - p->value[c], *H = d->aged[k][c];
         H[1] = decay * (H[1] + x * H[0]) + old * change;
         H[0] = decay * H[0] + m0 * change;
-        d->fixed[k][c] += by->constant * value[c] + by->own * (p->a * value[c] + p->b[c]) +
+        d->fixed[k][c] += by->constant * value[c] + by->own * (p->a[c] * value[c] + p->b[c]) +
                           by->plain * H[0] + by->aged * H[1] + by->viscous * change / h;
     }
 }
@@ -177,6 +177,7 @@ static sn_block_slopes *slopes_create(const sn_tissue *tissue, const sn_constant
 }
 
 sn_status sn_path_slopes_lateral(const sn_pulled *pulled, const sn_constants *by, double *out) {
+    SN_ASSERT(!pulled->tissue->branched);
     const sn_path *path = pulled->path;
     sn_block p = sn_block_of(pulled->tissue, &sn_faces_pulled, pulled->e);
     const int count = by->law_count + by->memory_count;

@@ -180,6 +180,7 @@ const sn_law sn_law_hgo = {
     .source = "Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15",
     .kind = SN_LAW_SOLID,
     .fibres = true,
+    .fibre_constant = "k1",
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
