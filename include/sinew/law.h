@@ -39,11 +39,16 @@ typedef struct sn_law {
     const char *source; ///< equation of the paper, or the publication
     sn_law_kind kind;
     bool fibres; ///< strains are expected in axes of the material, the first of them the fibre's
+    /// Nullable: the constant, in pascals, that the energy of the fibres is proportional to and
+    /// that stands nowhere else; what is left with it at 0 is the matrix.
+    const char *fibre_constant;
     int param_count;
     const sn_param *params;
     /// Nullable: conditions beyond the table's ranges (convexity); stores a text.
     sn_status (*check)(const double *value, int terms);
     void (*moduli)(const double *value, int terms, sn_moduli *out);
+    /// sn_law_sensitivity() into zeros: a constant without influence is left alone.
+    void (*sensitivity)(const double *value, int terms, int n, const double *in, double *dS);
     const sn_law_kernels *kernels; ///< one row per instruction set and precision
 } sn_law;
 
@@ -94,6 +99,17 @@ SN_API void sn_law_membrane(const sn_law *law, const double *value, int terms, i
                             const double *E, double *W, double *S, double *D);
 SN_API void sn_law_membrane_f(const sn_law *law, const float *value, int terms, int n,
                               const float *E, float *W, float *S, float *D);
+
+/// Components of the stress of a law: 1 (uniaxial), 6 (solid) or 3 (membrane).
+SN_API int sn_law_components(const sn_law *law);
+/// Derivatives of the stress by every value of a law, at n points of strain that stay: of T
+/// (uniaxial), S of W_d (solid) or S (membrane). Zero for a bulk modulus, which W_d does not hold.
+/// Where fibres begin to carry the one-sided derivatives differ; it is then that of fibres at rest.
+/// @param in  stretch (n) or Green strain (components x n), as for the stress
+/// @param dS  component c by value k of point i at [(k * components + c) * n + i]
+///                                                          (values x components x n)
+SN_API void sn_law_sensitivity(const sn_law *law, const double *value, int terms, int n,
+                               const double *in, double *dS);
 
 #ifdef __cplusplus
 }

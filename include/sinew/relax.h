@@ -9,6 +9,7 @@ extern "C" {
 #endif
 
 struct sn_exponentials;
+struct sn_memory_slope;
 
 /// A memory law: a constant table. Adding one is one file in src/relax/ and one registry line.
 typedef struct sn_memory_law {
@@ -26,6 +27,8 @@ typedef struct sn_memory_law {
     /// max_error stays 0 where the sum is G itself; else it bounds the error, and is at most the
     /// tolerance unless SN_TERMS_MAX terms do not reach it.
     void (*expand)(const double *value, int terms, double tolerance, struct sn_exponentials *out);
+    /// sn_memory_sensitivity() into slopes that are zero but for tau = 1.
+    void (*sensitivity)(const double *value, int terms, struct sn_memory_slope *out);
 } sn_memory_law;
 
 SN_API int sn_memory_law_count(void);
@@ -58,6 +61,21 @@ typedef struct sn_exponentials {
     double max_error;         ///< largest |difference to G| over the band, of G(0) = 1
     double t_min, t_max;      ///< the band, seconds
 } sn_exponentials;
+
+/// Derivative of G by one constant p. Every law has it in this form, with one exponential:
+///     dG/dp = constant + own G(t) + (plain + aged t/tau) exp(-t/tau) + viscous delta(t)
+/// It is 0 at t = 0 but for the impulse: G(0) stays 1. Parts are per unit of p.
+typedef struct sn_memory_slope {
+    double constant, own, plain, aged;
+    double tau;     ///< seconds, > 0; 1 where there is no exponential
+    double viscous; ///< seconds
+} sn_memory_slope;
+/// Derivatives of G by every value of a memory that is in range, exact (where sn_memory_expand()
+/// approximates G, they are those of G).
+/// @param out                                                     (values of the memory)
+SN_API void sn_memory_sensitivity(const sn_memory *memory, sn_memory_slope *out);
+/// dG/dp at t >= 0 without the impulse, G = G(t).
+SN_API double sn_memory_slope_at(const sn_memory_slope *slope, double G, double t);
 
 /// The fewest exponentials (g_i > 0, g_inf >= 0, sum 1) found that keep |error| <= tolerance for
 /// t = 0 and all t in [t_min, t_max], t_min > 0. Finite sums come back as they are (less terms that

@@ -131,10 +131,12 @@ static void relaxation_plots(sn_report *report, const test_outcome *o) {
                    &(sn_plot){.title = "Relaxation",
                               .x_label = "time since the end of the ramp [s]",
                               .y_label = "stress over peak stress; G [1]",
-                              .caption = "A step would fall along G(t). What relaxes during the "
-                                         "ramp is missing from the stress over its peak.",
+                              .caption = o->tissue->branched
+                                             ? NULL
+                                             : "A step would fall along G(t). What relaxes during "
+                                               "the ramp is missing from the stress over its peak.",
                               .log_x = true,
-                              .line_count = 2,
+                              .line_count = o->tissue->branched ? 1 : 2, // no G is of all
                               .line = line});
     sn_free(since);
 }
@@ -147,22 +149,26 @@ static void compliance_plot(sn_report *report, const test_outcome *o, double *si
     sn_moduli moduli;
     sn_tissue_moduli(o->tissue, &moduli);
     int first = 0, n = rows_since(o, p->ramp, p->ramp + p->hold, since, &first);
-    bool known = sn_memory_creep(&o->tissue->memory, &creep) == SN_OK;
+    bool branched = o->tissue->branched; // no creep function is of all
+    bool known = !branched && sn_memory_creep(&o->tissue->memory, &creep) == SN_OK;
     for (int i = 0; i < n; i++) {
         y[i] = (stretch[first + i] - 1) / p->stress;
         linear[i] = known ? sn_retardations_at(&creep, since[i]) / moduli.young : (double)NAN;
     }
     sn_line line[] = {{"strain over stress", SN_LINE_POINTS, 0, n, since, y},
                       {"J(t)/E, small strains", SN_DASHED, 1, n, since, linear}};
-    sn_report_plot(report, &(sn_plot){.title = "Creep compliance",
-                                      .x_label = "time since the end of the loading [s]",
-                                      .y_label = "compliance [1/kPa]",
-                                      .y_scale = 1e3,
-                                      .caption = "Dashed: the creep function of the tissue's "
-                                                 "memory under a step, over its modulus at rest.",
-                                      .log_x = true,
-                                      .line_count = 2,
-                                      .line = line});
+    sn_report_plot(report,
+                   &(sn_plot){.title = "Creep compliance",
+                              .x_label = "time since the end of the loading [s]",
+                              .y_label = "compliance [1/kPa]",
+                              .y_scale = 1e3,
+                              .caption = branched ? NULL
+                                                  : "Dashed: the creep function of the tissue's "
+                                                    "memory under a step, over its modulus at "
+                                                    "rest.",
+                              .log_x = true,
+                              .line_count = branched ? 1 : 2,
+                              .line = line});
 }
 
 static void creep_plots(sn_report *report, const test_outcome *o) {
@@ -284,12 +290,13 @@ static void dynamic_plots(sn_report *report, const test_outcome *o) {
 
 //---- the tissue ----------------------------------------------------------------------------------
 
-static void memory_plots(sn_report *report, const test_outcome *o) {
-    const sn_memory *memory = &o->tissue->memory;
+static void part_plots(sn_report *report, const test_outcome *o, sn_part part) {
+    const sn_memory *memory = sn_tissue_memory(o->tissue, part);
+    const char *name = test_part(o->tissue, part);
     sn_exponentials e;
-    if (memory->law->param_count == 0) return;
-    sn_report_heading(report, "Memory");
-    if (!test_memory(o, &e)) {
+    if (!name || memory->law->param_count == 0) return;
+    sn_report_heading(report, o->tissue->branched ? name : "Memory");
+    if (!test_memory(o, part, &e)) {
         sn_report_text(report, "No sum of exponentials stands for %s over the times of this test.",
                        memory->law->name);
         return;
@@ -370,11 +377,17 @@ static void tissue_table(sn_report *report, const sn_tissue *t) {
     text_rows r = {0};
     char caption[SN_TEXT_MAX];
     add_params(&r, t->law->params, t->law->param_count, t->terms, t->value);
-    add_params(&r, t->memory.law->params, t->memory.law->param_count, t->memory.terms,
-               t->memory.value);
-    snprintf(caption, sizeof caption,
-             "Constants: elastic law %s, memory %s. Elastic constants are instantaneous, G(0) = 1.",
-             t->law->name, t->memory.law->name);
+    int used = snprintf(caption, sizeof caption, "Constants: elastic law %s", t->law->name);
+    for (int k = 0; k < SN_PARTS; k++) {
+        const char *part = test_part(t, (sn_part)k);
+        const sn_memory *m = sn_tissue_memory(t, (sn_part)k);
+        if (!part) continue;
+        add_params(&r, m->law->params, m->law->param_count, m->terms, m->value);
+        used += snprintf(caption + used, sizeof caption - (size_t)used, ", %s%smemory %s",
+                         t->branched ? part : "", t->branched ? " " : "", m->law->name);
+    }
+    snprintf(caption + used, sizeof caption - (size_t)used,
+             ". Elastic constants are instantaneous, G(0) = 1.");
     sn_report_heading(report, "Tissue");
     table(report, &r, "constant", caption);
     if (t->source[0]) sn_report_text(report, "Source of the constants: %s", t->source);
@@ -415,7 +428,7 @@ sn_status test_report(const char *path, const test_outcome *o) {
     (o->replayed ? replay_plots : plots[o->protocol.kind])(report, o);
     if (!o->replayed) protocol_table(report, &o->protocol);
     tissue_table(report, o->tissue);
-    memory_plots(report, o);
+    for (int k = 0; k < SN_PARTS; k++) part_plots(report, o, (sn_part)k);
     sn_status status = sn_report_write(report, path);
     sn_report_destroy(report);
     return status;

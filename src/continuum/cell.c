@@ -214,7 +214,7 @@ static void mix(const sn_fe_space *s, const sn_fe_material *m, int q, int first,
                 for (int n = 0; n < 3 * L; n++)
                     work->L[4 * a + b][n] +=
                         slope[a][k] * e->lambda[q][b] * work->cofactor[3 * k * L + n];
-    double soft = isinf(m->bulk) ? 0.0 : -1.0 / (m->factor * m->bulk);
+    double soft = isinf(m->bulk) ? 0.0 : -1.0 / (m->part[SN_PART_VOLUMETRIC].factor * m->bulk);
     const double *weight = work->points.weight + q * s->batch_cells + first;
     for (int a = 0; a < 4; a++)
         for (int b = 0; b < 4; b++)

@@ -20,7 +20,8 @@ enum { CUTBACKS = 12 };     // halvings of the shortest planned step
 static bool remembers(const sn_case *c) {
     const sn_memory none = sn_memory_none();
     for (int r = 0; r < c->mesh->region_count; r++)
-        if (c->tissue[r].memory.law != none.law) return true;
+        for (int k = 0; k < SN_PARTS; k++)
+            if (sn_tissue_memory(c->tissue + r, (sn_part)k)->law != none.law) return true;
     return false;
 }
 

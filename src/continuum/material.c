@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { BLOCK = SN_FE_MEMORY * SN_FE_POINTS };
+enum { N = SN_FE_POINTS };
 
 static void solid_laws(char text[SN_TEXT_MAX]) {
     size_t used = 0;
@@ -43,18 +43,40 @@ static sn_status check_law(const sn_case *c, const sn_fe_space *s, int region, d
     return SN_OK;
 }
 
+static sn_status init_memories(const sn_case *c, const char *where, double shortest,
+                               sn_fe_material *m) {
+    static const int first[SN_PARTS + 1] = {0, SN_FE_VOLUME, SN_FE_FIBRES, SN_FE_MEMORY};
+    double longest = fmax(c->until, 2.0 * shortest);
+    m->splits = sn_tissue_split(m->tissue, m->split);
+    m->numbers = m->splits > 1 ? SN_FE_MEMORY : SN_FE_FIBRES;
+    for (int k = 0; k < SN_PARTS; k++) {
+        sn_fe_memory *part = m->part + k;
+        sn_exponentials *e = &part->series;
+        part->factor = 1.0;
+        part->first = first[k];
+        part->count = k == SN_PART_FIBRE && m->splits == 1 ? 0 : first[k + 1] - first[k];
+        if (part->count == 0) continue;
+        sn_status status = sn_memory_compress(sn_tissue_memory(m->tissue, (sn_part)k), shortest,
+                                              longest, c->continuum.memory_tolerance, e);
+        if (status != SN_OK) return sn_fail_within(status, "region \"%s\"", where);
+        m->remembers |= e->terms > 0 || e->viscous > 0.0 || e->g_inf < 1.0;
+    }
+    return SN_OK;
+}
+
 static sn_status init_material(const sn_case *c, const sn_fe_space *s, int region, double shortest,
                                sn_fe_material *m) {
     m->tissue = c->tissue + region;
-    m->factor = 1.0;
     SN_TRY(check_law(c, s, region, &m->bulk));
-    double longest = fmax(c->until, 2.0 * shortest);
-    sn_status status = sn_memory_compress(&m->tissue->memory, shortest, longest,
-                                          c->continuum.memory_tolerance, &m->series);
-    if (status != SN_OK)
-        return sn_fail_within(status, "region \"%s\"", c->mesh->region_name[region]);
-    m->remembers = m->series.terms > 0 || m->series.viscous > 0.0 || m->series.g_inf < 1.0;
-    return SN_OK;
+    return init_memories(c, c->mesh->region_name[region], shortest, m);
+}
+
+// numbers of a point that a batch of the material keeps
+static size_t kept(const sn_fe_material *m) {
+    size_t sum = m->remembers ? 2 * (size_t)m->numbers : 0;
+    for (int k = 0; k < SN_PARTS && m->remembers; k++)
+        sum += (size_t)(m->part[k].series.terms * m->part[k].count);
+    return sum;
 }
 
 void sn_fe_materials_destroy(sn_fe_materials *m) {
@@ -77,13 +99,13 @@ sn_status sn_fe_materials_create(const sn_case *c, const sn_fe_space *s, double 
     for (int r = 0; r < m->count; r++) {
         SN_TRY_GOTO(status, init_material(c, s, r, shortest, m->material + r));
         m->remembers |= m->material[r].remembers;
-        m->viscous |= m->material[r].series.viscous > 0.0;
+        for (int k = 0; k < SN_PARTS; k++)
+            m->viscous |= m->material[r].part[k].series.viscous > 0.0;
     }
     size_t total = 0;
     for (int b = 0; b < s->batches; b++) {
-        const sn_fe_material *of = m->material + s->batch_region[b];
         m->at[b] = total;
-        if (of->remembers) total += (size_t)(2 + of->series.terms) * BLOCK;
+        total += kept(m->material + s->batch_region[b]) * N;
     }
     status = SN_E_MEMORY;
     m->numbers = total;
@@ -96,9 +118,8 @@ fail:
     return status;
 }
 
-static void set_factors(sn_fe_material *m, double h) {
+static void set_factors(sn_fe_memory *m, double h) {
     const sn_exponentials *e = &m->series;
-    m->step = h;
     if (h > 0.0) sn_exponentials_factors(e, h, m->decay, m->gain);
     m->factor = e->g_inf + (h > 0.0 ? e->viscous / h : 0.0);
     for (int k = 0; k < e->terms; k++) {
@@ -110,19 +131,30 @@ static void set_factors(sn_fe_material *m, double h) {
     }
 }
 
+// `past` of one part; H points to its first exponential and is moved behind its last.
+static void recall(const sn_fe_memory *m, const double *before, const double **H, double *past) {
+    size_t count = (size_t)m->count * N, first = (size_t)m->first * N;
+    double back = m->factor - m->series.g_inf;
+    for (size_t k = 0; k < count; k++) past[first + k] = -back * before[first + k];
+    for (int i = 0; i < m->series.terms; i++, *H += count)
+        for (size_t k = 0; k < count; k++) past[first + k] += m->decay[i] * (*H)[k];
+}
+
 void sn_fe_materials_begin(sn_fe_materials *m, const sn_fe_space *s, double h) {
-    for (int r = 0; r < m->count; r++)
-        if (m->material[r].remembers) set_factors(m->material + r, h);
+    for (int r = 0; r < m->count; r++) {
+        sn_fe_material *of = m->material + r;
+        if (!of->remembers) continue;
+        of->step = h;
+        for (int k = 0; k < SN_PARTS; k++)
+            if (of->part[k].count > 0) set_factors(of->part + k, h);
+    }
     for (int b = 0; b < s->batches; b++) {
         const sn_fe_material *of = m->material + s->batch_region[b];
         if (!of->remembers) continue;
-        double *past = m->state + m->at[b], *before = past + BLOCK;
-        double back = of->factor - of->series.g_inf;
-        for (int k = 0; k < BLOCK; k++) past[k] = -back * before[k];
-        for (int i = 0; i < of->series.terms; i++) {
-            const double *H = before + (size_t)(i + 1) * BLOCK;
-            for (int k = 0; k < BLOCK; k++) past[k] += of->decay[i] * H[k];
-        }
+        size_t block = (size_t)of->numbers * N;
+        double *past = m->state + m->at[b];
+        const double *before = past + block, *H = before + block;
+        for (int k = 0; k < SN_PARTS; k++) recall(of->part + k, before, &H, past);
     }
 }
 
@@ -130,11 +162,15 @@ void sn_fe_materials_commit(sn_fe_materials *m, const sn_fe_space *s, int batch,
                             const double *elastic) {
     const sn_fe_material *of = m->material + s->batch_region[batch];
     if (!of->remembers) return;
-    double *before = m->state + m->at[batch] + BLOCK;
-    for (int i = 0; i < of->series.terms; i++) {
-        double *H = before + (size_t)(i + 1) * BLOCK;
-        for (int k = 0; k < BLOCK; k++)
-            H[k] = of->decay[i] * H[k] + of->gain[i] * (elastic[k] - before[k]);
+    size_t block = (size_t)of->numbers * N;
+    double *before = m->state + m->at[batch] + block, *H = before + block;
+    for (int p = 0; p < SN_PARTS; p++) {
+        const sn_fe_memory *part = of->part + p;
+        size_t count = (size_t)part->count * N, first = (size_t)part->first * N;
+        for (int i = 0; i < part->series.terms; i++, H += count)
+            for (size_t k = 0; k < count; k++)
+                H[k] = part->decay[i] * H[k] +
+                       part->gain[i] * (elastic[first + k] - before[first + k]);
     }
-    memcpy(before, elastic, BLOCK * sizeof *before);
+    memcpy(before, elastic, block * sizeof *before);
 }

@@ -86,8 +86,8 @@ static void strains(sn_fe_points *out) {
 // p, g and the elastic volumetric value of all points.
 static void volumes(const sn_fe_space *s, const sn_fe_material *m, const double *past, int batch,
                     const double *x, sn_fe_points *out) {
-    double *T = out->T + 6 * N, a = m->factor;
-    past = past ? past + 6 * N : NULL;
+    double *T = out->T + SN_FE_VOLUME * N, a = m->part[SN_PART_VOLUMETRIC].factor;
+    past = past ? past + SN_FE_VOLUME * N : NULL;
     if (!s->element.mixed) {
         for (int n = 0; n < N; n++) {
             T[n] = m->bulk * out->J1[n];
@@ -118,11 +118,11 @@ static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
 // S += p J C^{-1}, and the same in the tangent.
 static void add_volume(const sn_fe_space *s, const sn_fe_material *m, unsigned what,
                        sn_fe_points *out) {
-    double stiff[N], pJ[N];
+    double stiff[N], pJ[N], factor = m->part[SN_PART_VOLUMETRIC].factor;
     for (int n = 0; n < N; n++) {
         double J = 1.0 + out->J1[n];
         pJ[n] = out->p[n] * J;
-        stiff[n] = pJ[n] + (s->element.mixed ? 0.0 : m->factor * m->bulk * J * J);
+        stiff[n] = pJ[n] + (s->element.mixed ? 0.0 : factor * m->bulk * J * J);
     }
     for (int k = 0; k < 6; k++)
         for (int n = 0; n < N; n++) out->S[k * N + n] += pJ[n] * out->Ci[k * N + n];
@@ -142,11 +142,26 @@ static void add_volume(const sn_fe_space *s, const sn_fe_material *m, unsigned w
 // Keeps the elastic S_d, then S = a S_d + past and D = a D_d.
 static void remember(const sn_fe_material *m, const double *past, unsigned what,
                      sn_fe_points *out) {
+    double a = m->part[SN_PART_DEVIATORIC].factor;
     memcpy(out->T, out->S, 6 * N * sizeof *out->T);
     if (!past) return;
-    for (int k = 0; k < 6 * N; k++) out->S[k] = m->factor * out->S[k] + past[k];
+    for (int k = 0; k < 6 * N; k++) out->S[k] = a * out->S[k] + past[k];
     if (what & SN_FE_TANGENT)
-        for (int k = 0; k < 21 * N; k++) out->D[k] *= m->factor;
+        for (int k = 0; k < 21 * N; k++) out->D[k] *= a;
+}
+
+// Adds fibres with a memory of their own: keeps their elastic S_f, then S += a S_f + past, and the
+// same in W and D.
+static void add_fibres(const sn_fe_material *m, const double *past, unsigned what,
+                       sn_fe_points *out) {
+    const sn_tissue *fibres = m->split + 1;
+    double W[N], D[21 * N], *T = out->T + SN_FE_FIBRES * N, a = m->part[SN_PART_FIBRE].factor;
+    sn_law_solid(fibres->law, fibres->value, fibres->terms, N, out->E,
+                 what & SN_FE_ENERGY ? W : NULL, T, what & SN_FE_TANGENT ? D : NULL);
+    for (int k = 0; k < 6 * N; k++) out->S[k] += a * T[k];
+    for (int k = 0; k < 6 * N && past; k++) out->S[k] += past[SN_FE_FIBRES * N + k];
+    for (int k = 0; k < N && what & SN_FE_ENERGY; k++) out->W[k] += W[k];
+    for (int k = 0; k < 21 * N && what & SN_FE_TANGENT; k++) out->D[k] += a * D[k];
 }
 
 static bool sound(const sn_fe_space *s, int batch, const sn_fe_points *out, bool stressed,
@@ -177,14 +192,16 @@ bool sn_fe_points_at(const sn_fe_space *s, const sn_fe_materials *materials, int
     for (int q = 0; q < s->element.points; q++) gradients(s, batch, u, q, out);
     strains(out);
     if (!sound(s, batch, out, false, fault)) return false;
-    sn_law_solid(m->tissue->law, m->tissue->value, m->tissue->terms, N, out->E,
+    sn_law_solid(m->tissue->law, m->split->value, m->tissue->terms, N, out->E,
                  what & SN_FE_ENERGY ? out->W : NULL, out->S, what & SN_FE_TANGENT ? out->D : NULL);
     remember(m, past, what, out);
+    if (m->splits > 1) add_fibres(m, past, what, out);
     volumes(s, m, past, batch, x, out);
     add_volume(s, m, what, out);
     if (what & SN_FE_ENERGY && !isinf(m->bulk))
         for (int n = 0; n < N; n++) {
-            double v = out->T[6 * N + n]; // K (J - 1), or the volume strain of the pressure
+            // K (J - 1), or the volume strain of the pressure
+            double v = out->T[SN_FE_VOLUME * N + n];
             out->W[n] += s->element.mixed ? 0.5 * m->bulk * v * v : 0.5 * v * v / m->bulk;
         }
     return sound(s, batch, out, true, fault);

@@ -4,12 +4,14 @@
 //
 // In material axes, with M the displacement gradient, F = I + M, E = sym M + M^T M / 2 and
 // J - 1 = tr M + II(M) + det M (no difference of nearly equal numbers at small strain):
-//     S = H_d[S_d(E)] + p J C^{-1},   p = H_v[K (J - 1)]  or the unknown pressure,
-//     dS/dE = a D_d + p J (C^{-1} (x) C^{-1} - 2 I_{C^{-1}})  (+ a K J C^{-1} (x) J C^{-1}).
-// p is positive in tension. The equation of the unknown pressure is
-//     g = J - 1 + past/a - p/(a K) = 0,
-// divided by the factor a of the memory so that the matrix is symmetric; 1/K = 0 where the tissue
-// is incompressible, and there is then no volumetric memory.
+//     S = H_d[S_d(E)] + H_f[S_f(E)] + p J C^{-1},   p = H_v[K (J - 1)]  or the unknown pressure,
+//     dS/dE = a_d D_d + a_f D_f + p J (C^{-1} (x) C^{-1} - 2 I_{C^{-1}})
+//             (+ a_v K J C^{-1} (x) J C^{-1}),
+// S_f the fibres where they have a memory of their own, else 0. p is positive in tension. The
+// equation of the unknown pressure is
+//     g = J - 1 + past/a_v - p/(a_v K) = 0,
+// divided by the factor a_v of the volumetric memory so that the matrix is symmetric; 1/K = 0 where
+// the tissue is incompressible, and there is then no volumetric memory.
 #pragma once
 
 #include "continuum/material.h"

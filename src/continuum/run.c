@@ -58,11 +58,14 @@ static void describe_body(const sn_fe_problem *p, sn_run_summary *s) {
     s->threads = 1;
     for (int r = 0; r < p->materials->count; r++) {
         const sn_fe_material *m = p->materials->material + r;
-        if (!m->remembers) continue;
-        s->memory_terms = m->series.terms > s->memory_terms ? m->series.terms : s->memory_terms;
-        s->memory_error = fmax(s->memory_error, m->series.max_error);
-        s->memory_band_s[0] = m->series.t_min;
-        s->memory_band_s[1] = m->series.t_max;
+        for (int k = 0; k < SN_PARTS && m->remembers; k++) {
+            const sn_exponentials *e = &m->part[k].series;
+            s->memory_terms = e->terms > s->memory_terms ? e->terms : s->memory_terms;
+            s->memory_error = fmax(s->memory_error, e->max_error);
+            if (m->part[k].count == 0) continue;
+            s->memory_band_s[0] = e->t_min;
+            s->memory_band_s[1] = e->t_max;
+        }
     }
 }
 

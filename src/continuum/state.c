@@ -61,6 +61,13 @@ static void mix_history(uint64_t *hash, const sn_history *h) {
     mix(hash, h->value, (size_t)h->count * (size_t)h->channels * sizeof *h->value);
 }
 
+static void mix_memory(uint64_t *hash, const sn_exponentials *e) {
+    mix(hash, &e->g_inf, sizeof e->g_inf);
+    mix(hash, &e->viscous, sizeof e->viscous);
+    mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
+    mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+}
+
 // What the numbers of the state mean: body, tissues with the exponentials of their memories, loads,
 // tools, element, analysis. Not the length of the steps and the tolerance, which may be changed.
 static uint64_t fingerprint(const sn_fe_march *m) {
@@ -79,14 +86,10 @@ static uint64_t fingerprint(const sn_fe_march *m) {
     mix(&hash, c->gravity, sizeof c->gravity);
     for (int r = 0; r < m->problem->materials->count; r++) {
         const sn_fe_material *of = m->problem->materials->material + r;
-        const sn_exponentials *e = &of->series;
         mix(&hash, of->tissue->law->name, strlen(of->tissue->law->name));
         mix(&hash, of->tissue->value, sizeof of->tissue->value);
         mix(&hash, &of->tissue->density, sizeof of->tissue->density);
-        mix(&hash, &e->g_inf, sizeof e->g_inf);
-        mix(&hash, &e->viscous, sizeof e->viscous);
-        mix(&hash, e->g, (size_t)e->terms * sizeof *e->g);
-        mix(&hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+        for (int part = 0; part < SN_PARTS; part++) mix_memory(&hash, &of->part[part].series);
     }
     for (int k = 0; k < c->support_count; k++)
         mix(&hash, c->support[k].fix, sizeof c->support[k].fix);

@@ -65,6 +65,10 @@ static sn_status compress(const sn_tissue *tissue, int most, const sn_foreign *h
 
 sn_status sn_foreign_memory(const sn_tissue *tissue, int most, sn_foreign *how,
                             sn_exponentials *out) {
+    if (tissue->branched)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "memory branch: a file of another program takes one memory for all parts of "
+                       "the stress: give one, such as {law: prony, g: [0.3], tau: [1 s]}");
     SN_TRY(sn_memory_expand(&tissue->memory, out));
     if (out->viscous > 0)
         return sn_fail(SN_E_UNSUPPORTED,

@@ -7,6 +7,10 @@
 //     elastic: {law: exponential, B: 15, C: 20 kPa}
 //     memory: {law: fung-spectrum, c: 0.1, tau1: 10 ms, tau2: 100 s}
 //
+// or, where the parts of the stress differ,
+//
+//     memory: {branch: {deviatoric: {law: …}, volumetric: {law: …}, fibre: {law: …}}}
+//
 // The keys below `elastic` and `memory` are the parameter table of the law, so a new law is read
 // and written without a line here. `convention` (instantaneous, the default, or long-term) may
 // stand at the top, in `elastic` or in `memory`, once: it is about both.
@@ -20,6 +24,8 @@
 #include "io/yaml.h"
 
 #define KEYS_MAX (SN_VALUES_MAX + 4)
+
+static const char *const parts[SN_PARTS] = {"deviatoric", "volumetric", "fibre"};
 
 //---- parameters from a table ---------------------------------------------------------------------
 
@@ -177,14 +183,13 @@ static sn_status read_elastic(const sn_yaml *map, sn_tissue *tissue) {
     return sn_yaml_within(map, sn_law_check(tissue->law, tissue->value, tissue->terms));
 }
 
-static sn_status read_memory(const sn_yaml *map, bool long_term, sn_memory *memory) {
-    static const char *const more[] = {"law", "convention"};
-    const sn_yaml *branch = sn_yaml_get(map, "branch"), *law;
-    if (branch)
-        return sn_yaml_fail(branch, SN_E_UNSUPPORTED,
-                            "separate memories for parts of the stress are not supported, expected "
-                            "one memory for all such as {law: prony, g: [0.3], tau: [1 s]}");
-    SN_TRY(read_law_name(map, "{law: fung-spectrum, c: 0.1, tau1: 10 ms, tau2: 100 s}", &law));
+static const char memory_example[] = "{law: fung-spectrum, c: 0.1, tau1: 10 ms, tau2: 100 s}";
+
+// One law of memory; `more` are the keys that its map may have beside the law's.
+static sn_status read_law_of_memory(const sn_yaml *map, bool long_term, const char *const *more,
+                                    int count, sn_memory *memory) {
+    const sn_yaml *law;
+    SN_TRY(read_law_name(map, memory_example, &law));
     memory->law = sn_memory_law_find(law->text);
     if (!memory->law) return sn_yaml_within(law, SN_E_NAME);
 
@@ -192,9 +197,43 @@ static sn_status read_memory(const sn_yaml *map, bool long_term, sn_memory *memo
     snprintf(owner, sizeof owner, "memory %s", memory->law->name);
     table t = {owner,      memory->law->params, memory->law->param_count,
                !long_term, &memory->terms,      memory->value};
-    SN_TRY(check_keys(map, &t, more, 2));
+    SN_TRY(check_keys(map, &t, more, count));
     SN_TRY(read_table(map, &t));
     return long_term ? SN_OK : sn_yaml_within(map, sn_memory_check(memory));
+}
+
+// A memory for each part. One that is not named has none; but fibres, which are a part of what is
+// called deviatoric, follow it until they are named.
+static sn_status read_branches(const sn_yaml *map, bool long_term, sn_tissue *tissue) {
+    static const char *const memory_keys[] = {"branch", "convention"};
+    static const char *const more[] = {"law"};
+    sn_memory *const memory[SN_PARTS] = {&tissue->memory, &tissue->volumetric, &tissue->fibre};
+    const sn_yaml *branch = sn_yaml_get(map, "branch");
+    SN_TRY(sn_yaml_map(map, memory_keys, 2));
+    if (branch->kind != SN_YAML_MAP)
+        return sn_yaml_expected(branch, SN_E_SYNTAX, "a map such as {deviatoric: %s}",
+                                memory_example);
+    SN_TRY(sn_yaml_map(branch, parts, SN_PARTS));
+    if (branch->count == 0)
+        return sn_yaml_fail(branch, SN_E_KEY, "needs deviatoric, volumetric or fibre: missing");
+    tissue->branched = true;
+    for (int k = 0; k < SN_PARTS; k++) {
+        const sn_yaml *part = sn_yaml_get(branch, parts[k]);
+        if (part) SN_TRY(read_law_of_memory(part, long_term, more, 1, memory[k]));
+    }
+    if (tissue->law->fibre_constant && !sn_yaml_get(branch, parts[SN_PART_FIBRE]))
+        tissue->fibre = tissue->memory;
+    return SN_OK;
+}
+
+static sn_status read_memory(const sn_yaml *map, bool long_term, sn_tissue *tissue) {
+    static const char *const more[] = {"law", "convention"};
+    static const char *const keys[] = {"branch", "law", "convention"};
+    if (sn_yaml_get(map, "branch")) return read_branches(map, long_term, tissue);
+    // no constant of a law is a map: one that is, is a misspelt branch
+    for (const sn_yaml *value = map->first; value; value = value->next)
+        if (value->kind == SN_YAML_MAP) SN_TRY(sn_yaml_map(map, keys, 3));
+    return read_law_of_memory(map, long_term, more, 2, &tissue->memory);
 }
 
 // The key "convention" wherever it stands. *node is NULL where there is none.
@@ -236,9 +275,11 @@ static sn_status read_tissue(const sn_yaml *root, sn_tissue *tissue) {
     }
     SN_TRY(sn_yaml_need(root, "elastic", &node));
     SN_TRY(read_elastic(node, tissue));
-    if ((node = sn_yaml_get(root, "memory"))) SN_TRY(read_memory(node, long_term, &tissue->memory));
+    if ((node = sn_yaml_get(root, "memory"))) SN_TRY(read_memory(node, long_term, tissue));
     if (long_term) SN_TRY(sn_yaml_within(convention, sn_tissue_from_long_term(tissue)));
-    return sn_yaml_within(root, sn_tissue_check(tissue));
+    // the rest has been checked where it stands: what is left is the law against the branches
+    return sn_yaml_within(tissue->branched ? sn_yaml_get(node, "branch") : root,
+                          sn_tissue_check(tissue));
 }
 
 sn_status sn_tissue_read(const char *path, sn_tissue *tissue) {
@@ -282,18 +323,31 @@ static void write_value(sn_buffer *out, const sn_param *param, double value) {
     sn_buffer_text(out, text);
 }
 
-static void write_params(sn_buffer *out, const sn_param *params, int count, int terms,
-                         const double *value) {
+static void write_params(sn_buffer *out, const char *indent, const sn_param *params, int count,
+                         int terms, const double *value) {
     for (int k = 0; k < count; k++) {
         const sn_param *param = &params[k];
         int length = sn_param_length(param, terms);
         bool list = param->length == SN_PARAM_LIST || param->length > 1;
-        sn_buffer_print(out, "  %s: %s", param->name, list ? "[" : "");
+        sn_buffer_print(out, "%s%s: %s", indent, param->name, list ? "[" : "");
         for (int i = 0; i < length; i++) {
             if (i > 0) sn_buffer_text(out, ", ");
             write_value(out, param, *value++);
         }
         sn_buffer_text(out, list ? "]\n" : "\n");
+    }
+}
+
+static void write_memory(sn_buffer *out, const sn_tissue *tissue) {
+    int count = !tissue->branched ? 1 : tissue->law->fibre_constant ? 3 : 2;
+    const char *indent = tissue->branched ? "      " : "  ";
+    sn_buffer_text(out, tissue->branched ? "memory:\n  branch:\n" : "memory:\n");
+    for (int k = 0; k < count; k++) {
+        const sn_memory *memory = sn_tissue_memory(tissue, (sn_part)k);
+        if (tissue->branched) sn_buffer_print(out, "    %s:\n", parts[k]);
+        sn_buffer_print(out, "%slaw: %s\n", indent, memory->law->name);
+        write_params(out, indent, memory->law->params, memory->law->param_count, memory->terms,
+                     memory->value);
     }
 }
 
@@ -326,15 +380,14 @@ sn_status sn_tissue_write(const char *path, const sn_tissue *tissue, const char 
         sn_buffer_print(&out, "\ndensity: %s", density);
     }
     sn_buffer_print(&out, "\nelastic:\n  law: %s\n", tissue->law->name);
-    write_params(&out, tissue->law->params, tissue->law->param_count, tissue->terms, tissue->value);
+    write_params(&out, "  ", tissue->law->params, tissue->law->param_count, tissue->terms,
+                 tissue->value);
     if (tissue->law->kind == SN_LAW_UNIAXIAL && !isnan(tissue->poissons_ratio)) {
         char ratio[SN_NAME_MAX];
         sn_quantity_print(tissue->poissons_ratio, "1", ratio);
         sn_buffer_print(&out, "  poissons_ratio: %s\n", ratio);
     }
-    const sn_memory *memory = &tissue->memory;
-    sn_buffer_print(&out, "memory:\n  law: %s\n", memory->law->name);
-    write_params(&out, memory->law->params, memory->law->param_count, memory->terms, memory->value);
+    write_memory(&out, tissue);
     sn_status status = out.status == SN_OK ? sn_text_write(path, out.text, out.size) : out.status;
     sn_buffer_free(&out);
     return status;

@@ -127,6 +127,35 @@ SN_INLINE void isochoric_project(const isochoric *q, solid_point *out) {
     }                                                                                              \
     SN_LAW_KERNEL_OF(name, isochoric_point)
 
+#if SN_LAW_TABLE
+/// S of a stress Sbar on Ebar: a linear map, so that it takes derivatives of Sbar to those of S.
+SN_INLINE void isochoric_stress(const isochoric *q, const double Sbar[6], double S[6]) {
+    double G[6], scale = q->j * q->a_inverse;
+    SOLID_UNROLL for (int i = 0; i < 6; i++) G[i] = i < 3 ? 1 + q->g[i] : q->g[i];
+    double third = solid_dot(Sbar, G) / 3;
+    SOLID_UNROLL for (int i = 0; i < 6; i++) S[i] = scale * (Sbar[i] - third * q->P[i]);
+}
+
+/// `sensitivity` of a law on Ebar, from slopes(p, E, dS): the derivatives of Sbar by the first
+/// `count` constants at the strain Ebar, into zeros.
+#define SN_LAW_ISOCHORIC_SENSITIVITY(count)                                                        \
+    static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {      \
+        (void)terms;                                                                               \
+        for (int i = 0; i < n; i++) {                                                              \
+            isochoric q;                                                                           \
+            double e[6], Ebar[6], bar[count][6] = {{0}}, S[6];                                     \
+            for (int c = 0; c < 6; c++) e[c] = E[(ptrdiff_t)c * n + i];                            \
+            isochoric_split(e, &q);                                                                \
+            isochoric_strain(&q, Ebar);                                                            \
+            slopes(p, Ebar, bar);                                                                  \
+            for (int k = 0; k < (count); k++) {                                                    \
+                isochoric_stress(&q, bar[k], S);                                                   \
+                law_sensitivity_add(dS, 6, n, k, i, S);                                            \
+            }                                                                                      \
+        }                                                                                          \
+    }
+#endif
+
 //---- a law of the invariants I1 and I2 of Cbar ---------------------------------------------------
 
 /// Energy and its derivatives at i1 = I1 - 3, i2 = I2 - 3. W must be linear in i2, with no product
@@ -198,3 +227,39 @@ SN_INLINE void invariant_point(const isochoric *q, const invariant_energy *w, in
         invariant_point(&q, &w, uses, out);                                                        \
     }                                                                                              \
     SN_LAW_KERNEL_OF(name, invariant_law)
+
+#if SN_LAW_TABLE
+/// Derivatives of w1 and w2 by one constant.
+typedef struct invariant_slope {
+    double w1, w2;
+} invariant_slope;
+
+/// S of w1 and w2, in which it is linear (see invariant_point()).
+SN_INLINE void invariant_stress(const isochoric *q, invariant_slope w, double S[6]) {
+    double s0 = 2 * (w.w1 + 2 * q->j * w.w2), s1 = -2 * q->j * w.w2;
+    double j3 = q->j * q->j * q->j, scale = q->j * q->a_inverse;
+    SOLID_UNROLL for (int i = 0; i < 6; i++) {
+        double part = q->g[i] - q->adj[i], N = j3 * (i < 3 ? q->d + part : part);
+        S[i] = scale * (s0 * N + s1 * (q->g[i] - 2 * q->g_half * q->P[i] / 3));
+    }
+}
+
+/// `sensitivity` of a law of the invariants, from slopes(p, i1, out) for its first `count`
+/// constants.
+#define SN_LAW_INVARIANT_SENSITIVITY(count)                                                        \
+    static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {      \
+        (void)terms;                                                                               \
+        for (int i = 0; i < n; i++) {                                                              \
+            isochoric q;                                                                           \
+            invariant_slope w[count];                                                              \
+            double e[6], S[6];                                                                     \
+            for (int c = 0; c < 6; c++) e[c] = E[(ptrdiff_t)c * n + i];                            \
+            isochoric_split(e, &q);                                                                \
+            slopes(p, 3 * q.j_m1, w);                                                              \
+            for (int k = 0; k < (count); k++) {                                                    \
+                invariant_stress(&q, w[k], S);                                                     \
+                law_sensitivity_add(dS, 6, n, k, i, S);                                            \
+            }                                                                                      \
+        }                                                                                          \
+    }
+#endif

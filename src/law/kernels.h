@@ -49,6 +49,15 @@ typedef sn_law_batch_32 law_batch;
 #define SN_LAW_KERNELS(name) SN_ISA_LIST_FOR(SN_LAW_DECLARE, name)
 #endif
 
+#if SN_LAW_TABLE
+/// Adds the `rows` components of one constant, number k of the law, to the sensitivities of point i
+/// of n (sn_law_sensitivity()).
+SN_INLINE void law_sensitivity_add(double *dS, int rows, int n, int k, int i, const double *x) {
+    double *at = dS + (ptrdiff_t)k * rows * n + i;
+    for (int c = 0; c < rows; c++) at[(ptrdiff_t)c * n] += x[c];
+}
+#endif
+
 //---- rows of parameter tables --------------------------------------------------------------------
 
 /// A positive modulus in pascals that the user must give.

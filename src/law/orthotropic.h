@@ -9,7 +9,7 @@
 // components of a tensor twice over; the shears count E12 and E21 both, as equation (21) does.
 #pragma once
 
-#include "law/solid.h"
+#include "law/isochoric.h"
 
 enum { ORTHOTROPIC = 9 };
 
@@ -36,6 +36,26 @@ SN_INLINE real orthotropic_slope(const real *a, int i, int k) {
 }
 
 #if SN_LAW_TABLE
+/// dq/da of q = A E for the nine constants, into zeros.
+SN_INLINE void orthotropic_slopes(const double E[6], double dq[ORTHOTROPIC][6]) {
+    for (int i = 0; i < 3; i++) {
+        const int k = (i + 1) % 3;
+        dq[i][i] = E[i];
+        dq[3 + i][i] = E[k];
+        dq[3 + i][k] = E[i];
+        dq[6 + i][3 + i] = E[3 + i];
+    }
+}
+
+/// From dq/da to the derivatives of c exp(Q) q, which are c exp(Q) (dQ/da q + dq/da), dQ = dq:E.
+SN_INLINE void orthotropic_exponential_slopes(double scale, const double q[6], const double E[6],
+                                              double dq[ORTHOTROPIC][6]) {
+    for (int k = 0; k < ORTHOTROPIC; k++) {
+        double dQ = solid_dot(dq[k], E);
+        for (int c = 0; c < 6; c++) dq[k][c] = scale * (dQ * q[c] + dq[k][c]);
+    }
+}
+
 /// Refuses constants of which Q is not convex. It must be positive for every strain but 0 or, if
 /// `weak`, negative for none: all principal minors positive, or not negative but for rounding.
 /// `law` and `list` say whose constants they are.

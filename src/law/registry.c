@@ -63,6 +63,17 @@ sn_status sn_law_check(const sn_law *law, const double *value, int terms) {
     return law->check ? law->check(value, terms) : SN_OK;
 }
 
+int sn_law_components(const sn_law *law) {
+    return law->kind == SN_LAW_UNIAXIAL ? 1 : law->kind == SN_LAW_SOLID ? 6 : 3;
+}
+
+void sn_law_sensitivity(const sn_law *law, const double *value, int terms, int n, const double *in,
+                        double *dS) {
+    int values = sn_param_offset(law->params, law->param_count, terms);
+    memset(dS, 0, (size_t)values * (size_t)sn_law_components(law) * (size_t)n * sizeof *dS);
+    law->sensitivity(value, terms, n, in, dS);
+}
+
 void sn_law_uniaxial(const sn_law *law, const double *value, int terms, int n,
                      const double *stretch, double *W, double *T, double *dT) {
     SN_ASSERT(law->kind == SN_LAW_UNIAXIAL);

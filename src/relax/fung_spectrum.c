@@ -152,6 +152,19 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     out->max_error = 2 * relaxing * exp(-2 * n * rate);
 }
 
+// With dD/dtau2 = exp(-t/tau2)/tau2, dD/dtau1 = -exp(-t/tau1)/tau1, D = (N G - 1)/c:
+//     dG/dc = (G - 1)/(c N),  dG/dtau2 = c/(N tau2) (exp(-t/tau2) - G),
+//     dG/dtau1 = c/(N tau1) (G - exp(-t/tau1)).
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    (void)terms;
+    double c = value[C], N = 1 + c * width(value);
+    double first = c / (N * value[TAU1]), last = c / (N * value[TAU2]);
+    out[C].own = 1 / (c * N);
+    out[C].constant = -out[C].own;
+    out[TAU1] = (sn_memory_slope){.own = first, .plain = -first, .tau = value[TAU1]};
+    out[TAU2] = (sn_memory_slope){.own = -last, .plain = last, .tau = value[TAU2]};
+}
+
 const sn_memory_law sn_relax_fung_spectrum = {
     .name = "fung-spectrum",
     .text = "Continuous spectrum c/q between two relaxation times.",
@@ -163,4 +176,5 @@ const sn_memory_law sn_relax_fung_spectrum = {
     .modulus = modulus,
     .equilibrium = equilibrium,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

@@ -65,6 +65,15 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     out->tau[0] = value[0];
 }
 
+// by tau_epsilon both the weights and the exponential change, by tau_sigma the weights alone
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    (void)terms;
+    double rise = 1 / value[1], fall = -value[0] / value[1] / value[1]; // of g_inf
+    out[0] = (sn_memory_slope){
+        .constant = rise, .plain = -rise, .aged = weight(value) / value[0], .tau = value[0]};
+    out[1] = (sn_memory_slope){.constant = fall, .plain = -fall, .tau = value[0]};
+}
+
 const sn_memory_law sn_relax_kelvin = {
     .name = "kelvin",
     .text = "Standard linear solid: one relaxation time.",
@@ -76,4 +85,5 @@ const sn_memory_law sn_relax_kelvin = {
     .modulus = modulus,
     .equilibrium = equilibrium,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

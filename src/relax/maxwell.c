@@ -39,6 +39,12 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     out->tau[0] = value[0];
 }
 
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    (void)terms;
+    out[0].aged = 1 / value[0];
+    out[0].tau = value[0];
+}
+
 const sn_memory_law sn_relax_maxwell = {
     .name = "maxwell",
     .text = "Spring and dashpot in series: all stress relaxes.",
@@ -49,4 +55,5 @@ const sn_memory_law sn_relax_maxwell = {
     .modulus = modulus,
     .equilibrium = equilibrium,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

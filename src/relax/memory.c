@@ -57,3 +57,18 @@ sn_status sn_memory_expand(const sn_memory *memory, sn_exponentials *out) {
     out->t_max = INFINITY;
     return SN_OK;
 }
+
+void sn_memory_sensitivity(const sn_memory *memory, sn_memory_slope *out) {
+    const sn_memory_law *law = memory->law;
+    int values = sn_param_offset(law->params, law->param_count, memory->terms);
+    for (int k = 0; k < values; k++) out[k] = (sn_memory_slope){.tau = 1.0};
+    law->sensitivity(memory->value, memory->terms, out);
+}
+
+double sn_memory_slope_at(const sn_memory_slope *slope, double G, double t) {
+    SN_ASSERT(t >= 0);
+    double x = t / slope->tau;
+    // exp(-745) is 0, and infinity times it would be no number
+    double relaxing = x < 745 ? (slope->plain + slope->aged * x) * exp(-x) : 0.0;
+    return slope->constant + slope->own * G + relaxing;
+}

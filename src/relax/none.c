@@ -23,6 +23,10 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     out->g_inf = 1.0;
 }
 
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    (void)value, (void)terms, (void)out;
+}
+
 const sn_memory_law sn_relax_none = {
     .name = "none",
     .text = "No memory: the stress follows the strain at once.",
@@ -31,4 +35,5 @@ const sn_memory_law sn_relax_none = {
     .modulus = modulus,
     .equilibrium = equilibrium,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

@@ -70,6 +70,14 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     }
 }
 
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    for (int i = 0; i < terms; i++) {
+        double g = value[i], tau = value[terms + i];
+        out[i] = (sn_memory_slope){.constant = -1, .plain = 1, .tau = tau};
+        out[terms + i] = (sn_memory_slope){.aged = g / tau, .tau = tau};
+    }
+}
+
 const sn_memory_law sn_relax_prony = {
     .name = "prony",
     .text = "Sum of exponentials (generalised Maxwell body).",
@@ -81,4 +89,5 @@ const sn_memory_law sn_relax_prony = {
     .modulus = modulus,
     .equilibrium = equilibrium,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

@@ -47,6 +47,11 @@ static void expand(const double *value, int terms, double tolerance, sn_exponent
     out->viscous = value[0];
 }
 
+static void sensitivity(const double *value, int terms, sn_memory_slope *out) {
+    (void)value, (void)terms;
+    out[0].viscous = 1;
+}
+
 const sn_memory_law sn_relax_voigt = {
     .name = "voigt",
     .text = "Spring and dashpot side by side: the elastic law is the long-term one.",
@@ -58,4 +63,5 @@ const sn_memory_law sn_relax_voigt = {
     .equilibrium = equilibrium,
     .impulse = impulse,
     .expand = expand,
+    .sensitivity = sensitivity,
 };

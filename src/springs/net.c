@@ -104,6 +104,11 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
 
 static sn_status set_memory(const sn_case *c, sn_net_region *region, double t_min) {
     t_min = fmin(fmax(t_min, c->until * 1e-6), c->until * 0.1);
+    if (region->tissue.branched)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "springs: tissue %s has a branch memory: give one memory for the whole "
+                       "stress, or use the engine continuum",
+                       region->tissue.name);
     SN_TRY(sn_memory_compress(&region->tissue.memory, t_min, c->until, c->springs.memory_tolerance,
                               &region->memory));
     region->branches = region->memory.terms + (region->memory.viscous > 0);

@@ -1,12 +1,13 @@
-// A tissue: checks, named constants, conversion from long-term constants, moduli.
+// A tissue: checks, named constants, moduli.
 // SPDX-License-Identifier: Apache-2.0
-#include "sinew/tissue.h"
-
 #include <math.h>
-#include <string.h>
+
+#include "tissue/parts.h"
 
 sn_tissue sn_tissue_default(void) {
-    return (sn_tissue){.density = NAN, .poissons_ratio = NAN, .memory = sn_memory_none()};
+    const sn_memory none = sn_memory_none();
+    return (sn_tissue){
+        .density = NAN, .poissons_ratio = NAN, .memory = none, .volumetric = none, .fibre = none};
 }
 
 static sn_status check_density(const sn_tissue *tissue) {
@@ -40,12 +41,22 @@ static sn_status check_terms(const sn_tissue *tissue) {
                    law->name, tissue->terms, least, most, SN_VALUES_MAX);
 }
 
+static sn_status check_memories(const sn_tissue *tissue) {
+    if (!tissue->branched) return sn_memory_check(&tissue->memory);
+    SN_TRY(sn_tissue_check_branches(tissue));
+    for (int k = 0; k < SN_PARTS; k++) {
+        sn_status status = sn_memory_check(sn_tissue_memory(tissue, (sn_part)k));
+        if (status != SN_OK) return sn_fail_within(status, "%s", sn_tissue_part_name((sn_part)k));
+    }
+    return SN_OK;
+}
+
 static sn_status check_parts(const sn_tissue *tissue) {
     if (!tissue->law)
         return sn_fail(SN_E_DEFINITION, "no elastic law: expected one, such as `exponential`");
     SN_TRY(check_terms(tissue));
     SN_TRY(sn_law_check(tissue->law, tissue->value, tissue->terms));
-    SN_TRY(sn_memory_check(&tissue->memory));
+    SN_TRY(check_memories(tissue));
     SN_TRY(check_density(tissue));
     return check_poissons_ratio(tissue);
 }
@@ -82,47 +93,6 @@ sn_status sn_tissue_set(sn_tissue *tissue, const char *name, double value) {
         return sn_fail(SN_E_NAME, "parameter \"%s\" of law %s is a list: expected a scalar", name,
                        law->name);
     tissue->value[sn_param_offset(law->params, k, tissue->terms)] = value;
-    return SN_OK;
-}
-
-// Multiplies all stresses of the law. An energy per volume that is made of constants in pascals and
-// of pure numbers is proportional to those in pascals, so these are what must be multiplied.
-static void scale_stresses(sn_tissue *tissue, double factor) {
-    const sn_law *law = tissue->law;
-    for (int k = 0; k < law->param_count; k++) {
-        if (strcmp(law->params[k].unit, "Pa") != 0) continue;
-        double *value = tissue->value + sn_param_offset(law->params, k, tissue->terms);
-        int length = sn_param_length(&law->params[k], tissue->terms);
-        for (int i = 0; i < length; i++) value[i] *= factor;
-    }
-}
-
-sn_status sn_tissue_from_long_term(sn_tissue *tissue) {
-    if (!tissue->law)
-        return sn_fail(SN_E_DEFINITION, "long-term constants of a tissue without an elastic law");
-    sn_memory *memory = &tissue->memory;
-    SN_ASSERT(memory->law);
-    int weights = sn_param_find(memory->law->params, memory->law->param_count, "g");
-    if (weights >= 0) {
-        // weights over the long-term modulus: they may exceed 1, G(0) is 1 plus their sum
-        double *g = memory->value + sn_param_offset(memory->law->params, weights, memory->terms);
-        double instantaneous = 1;
-        for (int i = 0; i < memory->terms; i++) instantaneous += g[i];
-        if (!(instantaneous >= 1 && isfinite(instantaneous)))
-            return sn_fail(SN_E_RANGE, "memory %s: the weights g sum to %g: expected at least 0",
-                           memory->law->name, instantaneous - 1);
-        for (int i = 0; i < memory->terms; i++) g[i] /= instantaneous;
-        scale_stresses(tissue, instantaneous);
-        return SN_OK;
-    }
-    SN_TRY(sn_memory_check(memory));
-    double equilibrium = sn_memory_equilibrium(memory);
-    if (!(equilibrium > 0))
-        return sn_fail(SN_E_RANGE,
-                       "memory %s relaxes to no stress at all: there are no long-term constants; "
-                       "give instantaneous ones",
-                       memory->law->name);
-    scale_stresses(tissue, 1 / equilibrium);
     return SN_OK;
 }
 

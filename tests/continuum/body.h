@@ -46,6 +46,27 @@ static inline void body_set_memory(sn_tissue *t, const char *law, int terms, con
     CHECK_OK(sn_memory_check(&t->memory));
 }
 
+/// hgo whose matrix, volume and fibres have a memory each; without the volume's where
+/// incompressible.
+static inline sn_tissue body_artery(double kappa, double bulk) {
+    static const double spectrum[] = {0.2, 0.02, 30}, prony[] = {0.3, 0.25, 0.2, 3.0},
+                        kelvin[] = {0.4, 0.7};
+    static const char *const name[] = {"mu", "k1", "k2", "kappa", "angle"};
+    const double value[] = {1300, 1900, 1.6, kappa, 0.5};
+    sn_tissue t = body_tissue("hgo", bulk);
+    for (int k = 0; k < 5; k++) CHECK_OK(sn_tissue_set(&t, name[k], value[k]));
+    body_set_memory(&t, "fung-spectrum", 0, spectrum, 3);
+    t.fibre = t.memory;
+    if (isfinite(bulk)) {
+        body_set_memory(&t, "kelvin", 0, kelvin, 2);
+        t.volumetric = t.memory;
+    }
+    body_set_memory(&t, "prony", 2, prony, 4);
+    t.branched = true;
+    CHECK_OK(sn_tissue_check(&t));
+    return t;
+}
+
 /// A case on a mesh of a built-in shape with one tissue; takes nothing.
 static inline sn_case *body_case(const sn_shape_def *def, const sn_tissue *tissue,
                                  sn_element element) {

@@ -331,8 +331,11 @@ static void refusals_say_what(void **state) {
         {HEAD "elastic: {law: neo-hookean, shear_modulus: 3 kPa, bulk_modulus: 1 MPa}\n"
               "memory: {law: maxwell, tau: 1 s}\n",
          sn_tissue_write_abaqus, "relaxes to no stress"},
+        {HEAD "elastic: {law: neo-hookean, shear_modulus: 3 kPa, bulk_modulus: 1 MPa}\n"
+              "memory: {branch: {deviatoric: {law: prony, g: [0.3], tau: [1 s]}}}\n",
+         sn_tissue_write_febio, "memory branch: a file of another program takes one"},
     };
-    for (int k = 0; k < 6; k++) {
+    for (int k = 0; k < 7; k++) {
         const sn_tissue tissue = tissue_of(cases[k].yaml);
         sn_foreign how = units();
         assert_int_equal(cases[k].write(scratch_path("no"), &tissue, &how), SN_E_UNSUPPORTED);

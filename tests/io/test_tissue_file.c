@@ -134,6 +134,44 @@ static void long_term_constants_are_converted(void **state) {
     }
 }
 
+// A memory for each part of the stress. What is not named has none, but fibres follow the
+// deviatoric memory until they are named.
+#define HGO                                                                                        \
+    "tissue: t\nelastic: {law: hgo, mu: 2 kPa, k1: 3 kPa, k2: 2, kappa: 0.1, angle: 30 deg, "      \
+    "bulk_modulus: 40 kPa}\n"
+
+static void branches(void **state) {
+    (void)state;
+    sn_tissue t = read_text(HGO "memory:\n  branch:\n"
+                                "    deviatoric: {law: prony, g: [0.5], tau: [20 ms]}\n"
+                                "    volumetric: {law: kelvin, tau_epsilon: 1 s, tau_sigma: 2 s}\n"
+                                "    fibre: {law: none}\n");
+    assert_true(t.branched);
+    assert_string_equal(t.memory.law->name, "prony");
+    CHECK_ABS(memory_value(&t, "tau", 0), 0.02, 0.0);
+    assert_string_equal(t.volumetric.law->name, "kelvin");
+    CHECK_ABS(t.volumetric.value[1], 2.0, 0.0);
+    assert_string_equal(t.fibre.law->name, "none");
+    t = read_text(HGO "memory: {branch: {deviatoric: {law: maxwell, tau: 3 s}}}\n");
+    assert_string_equal(t.volumetric.law->name, "none");
+    assert_string_equal(t.fibre.law->name, "maxwell");
+    CHECK_ABS(t.fibre.value[0], 3.0, 0.0);
+    t = read_text(HGO "memory: {branch: {volumetric: {law: maxwell, tau: 3 s}}}\n");
+    assert_string_equal(t.memory.law->name, "none");
+    assert_string_equal(t.fibre.law->name, "none");
+    t = read_text("tissue: t\nelastic: {law: demiray, c: 1 kPa, b: 2, bulk_modulus: 9 kPa}\n"
+                  "memory: {branch: {deviatoric: {law: maxwell, tau: 3 s}}}\n");
+    assert_true(t.branched);
+    assert_string_equal(t.fibre.law->name, "none"); // there are none
+    t = read_text(HGO
+                  "convention: long-term\nmemory: {branch: {deviatoric: {law: prony, g: [1, 2], "
+                  "tau: [1 s, 2 s]}, volumetric: {law: prony, g: [0.5], tau: [1 s]}}}\n");
+    CHECK_REL(sn_tissue_value(&t, "mu"), 8e3, 1e-15);
+    CHECK_REL(sn_tissue_value(&t, "k1"), 12e3, 1e-15);
+    CHECK_REL(sn_tissue_value(&t, "bulk_modulus"), 60e3, 1e-15);
+    CHECK_REL(t.fibre.value[1], 0.5, 1e-15);
+}
+
 //---- refused -------------------------------------------------------------------------------------
 
 #define T "tissue: t\n"
@@ -246,7 +284,37 @@ static void bad_tissues_are_refused(void **state) {
         {T E "memory: {law: prony, g: [1.2], tau: [1 s]}\n", SN_E_RANGE,
          "key \"memory.g[1]\": found \"1.2\", expected at least 0 and at most 1", NULL},
         {T E "memory: {branch: {deviatoric: {law: prony, g: [0.7], tau: [1 s]}}}\n",
-         SN_E_UNSUPPORTED, "key \"memory.branch\"", "not supported"},
+         SN_E_UNSUPPORTED, "t.yaml:3:18: key \"memory.branch\"", "exponential is no three-dim"},
+        {HGO "memory: {branch: {deviatorik: {law: none}}}\n", SN_E_KEY,
+         "t.yaml:3:19: unknown key \"memory.branch.deviatorik\"", "did you mean \"deviatoric\"?"},
+        {HGO "memory: {branches: {fibre: {law: none}}}\n", SN_E_KEY,
+         "unknown key \"memory.branches\"", "did you mean \"branch\"?"},
+        {HGO "memory: {law: {fibre: {law: none}}}\n", SN_E_SYNTAX, "key \"memory.law\"",
+         "the name of a law"},
+        {HGO "memory: {law: none, branch: {fibre: {law: none}}}\n", SN_E_KEY,
+         "unknown key \"memory.law\"", "branch"},
+        {HGO "memory: {branch: {}}\n", SN_E_KEY, "key \"memory.branch\"", "missing"},
+        {HGO "memory: {branch: none}\n", SN_E_SYNTAX, "key \"memory.branch\": found \"none\"",
+         "a map such as {deviatoric: {law"},
+        {HGO "memory: {branch: {fibre: none}}\n", SN_E_SYNTAX, "key \"memory.branch.fibre\"",
+         "a map such as {law"},
+        {HGO "memory: {branch: {fibre: {law: pronny}}}\n", SN_E_NAME,
+         "t.yaml:3:32: key \"memory.branch.fibre.law\"", "did you mean \"prony\"?"},
+        {HGO "memory: {branch: {fibre: {law: maxwell, tau: 3}}}\n", SN_E_UNIT,
+         "key \"memory.branch.fibre.tau\"", "a time such as"},
+        {HGO "memory: {branch: {fibre: {law: maxwell, tau: 3 s, convention: long-term}}}\n",
+         SN_E_KEY, "unknown key \"memory.branch.fibre.convention\"", NULL},
+        {HGO "memory: {branch: {volumetric: {law: prony, g: [0.7, 0.7], tau: [1 s, 2 s]}}}\n",
+         SN_E_RANGE, "key \"memory.branch.volumetric\"", "weights g sum to 1.4"},
+        {HGO "memory: {branch: {volumetric: {law: prony, g: [-2], tau: [1 s]}}, convention: "
+             "long-term}\n",
+         SN_E_RANGE, "key \"memory.convention\"", "volumetric: memory prony"},
+        {T "elastic: {law: neo-hookean, shear_modulus: 1 kPa, bulk_modulus: 9 kPa}\n"
+           "memory: {branch: {fibre: {law: maxwell, tau: 3 s}}}\n",
+         SN_E_UNSUPPORTED, "key \"memory.branch\"", "law neo-hookean has no fibres"},
+        {T "elastic: {law: neo-hookean, shear_modulus: 1 kPa, bulk_modulus: incompressible}\n"
+           "memory: {branch: {volumetric: {law: maxwell, tau: 3 s}}}\n",
+         SN_E_DEFINITION, "key \"memory.branch\"", "incompressible"},
         {T E "convention: longterm\n", SN_E_NAME, "key \"convention\"",
          "did you mean \"long-term\"?"},
         {T E "convention: long-term\nmemory: {law: maxwell, tau: 1 s}\n", SN_E_RANGE,
@@ -308,17 +376,23 @@ static void mutations_are_survived(void **state) {
 
 //---- written -------------------------------------------------------------------------------------
 
+static void check_same_memory(const sn_memory *a, const sn_memory *b) {
+    assert_ptr_equal(a->law, b->law);
+    assert_int_equal(a->terms, b->terms);
+    int count = sn_param_offset(a->law->params, a->law->param_count, a->terms);
+    assert_memory_equal(a->value, b->value, (size_t)count * sizeof(double));
+}
+
 static void check_same(const sn_tissue *a, const sn_tissue *b) {
     assert_string_equal(a->name, b->name);
     assert_string_equal(a->source, b->source);
     assert_ptr_equal(a->law, b->law);
     assert_int_equal(a->terms, b->terms);
-    assert_ptr_equal(a->memory.law, b->memory.law);
-    assert_int_equal(a->memory.terms, b->memory.terms);
+    assert_true(a->branched == b->branched);
+    for (int k = 0; k < SN_PARTS; k++)
+        check_same_memory(sn_tissue_memory(a, (sn_part)k), sn_tissue_memory(b, (sn_part)k));
     int count = sn_param_offset(a->law->params, a->law->param_count, a->terms);
     assert_memory_equal(a->value, b->value, (size_t)count * sizeof(double));
-    count = sn_param_offset(a->memory.law->params, a->memory.law->param_count, a->memory.terms);
-    assert_memory_equal(a->memory.value, b->memory.value, (size_t)count * sizeof(double));
     assert_true(a->density == b->density || (isnan(a->density) && isnan(b->density)));
     assert_true(a->poissons_ratio == b->poissons_ratio ||
                 (isnan(a->poissons_ratio) && isnan(b->poissons_ratio)));
@@ -351,7 +425,7 @@ static void fill_random(uint64_t *seed, const sn_param *params, int count, int t
 static void written_tissues_read_back_to_the_bit(void **state) {
     (void)state;
     uint64_t seed = 11;
-    int written = 0, tried = 0;
+    int written = 0, tried = 0, in_parts = 0;
     for (int l = 0; l < sn_law_count(); l++) {
         int of_law = 0;
         for (int m = 0; m < sn_memory_law_count() * 8; m++, tried++) {
@@ -374,7 +448,12 @@ static void written_tissues_read_back_to_the_bit(void **state) {
                         tissue.memory.terms, tissue.memory.value);
             if (tissue.memory.terms) // weights that sum to less than 1
                 for (int i = 0; i < tissue.memory.terms; i++) tissue.memory.value[i] /= 8;
+            // every third solid relaxes in parts, and maybe another law's memory in one of them
+            tissue.branched = m % 3 == 2 && tissue.law->kind == SN_LAW_SOLID;
+            if (m % 2) tissue.volumetric = tissue.memory;
+            if (tissue.law->fibre_constant && m % 4) tissue.fibre = tissue.memory;
             if (sn_tissue_check(&tissue) != SN_OK) continue; // conditions beyond the ranges
+            in_parts += tissue.branched;
             const char *path = scratch_path("w.yaml");
             CHECK_OK(sn_tissue_write(path, &tissue, m % 2 ? "fitted to\n\ntwo: curves\t#" : NULL));
             CHECK_OK(sn_tissue_read(path, &back));
@@ -384,7 +463,7 @@ static void written_tissues_read_back_to_the_bit(void **state) {
         assert_true(of_law > 3);
     }
     if (getenv("SINEW_SHOW")) print_message("%d of %d tissues written\n", written, tried);
-    assert_true(written > tried / 3);
+    assert_true(written > tried / 3 && in_parts > 20);
 }
 
 static void laws_with_lists_and_angles(void **state) {
@@ -437,6 +516,16 @@ static void written_text_is_readable(void **state) {
                               "elastic:\n  law: exponential\n  B: 15\n  C: 20 kPa\n"
                               "memory:\n  law: fung-spectrum\n  c: 0.1\n  tau1: 10 ms\n"
                               "  tau2: 100 s\n");
+    tissue = read_text(HGO "memory: {branch: {deviatoric: {law: maxwell, tau: 3 s}}}\n");
+    CHECK_OK(sn_tissue_write(path, &tissue, NULL));
+    memset(text, 0, sizeof text);
+    file = fopen(path, "r");
+    assert_true(fread(text, 1, sizeof text - 1, file) > 0);
+    fclose(file);
+    assert_string_equal(strstr(text, "memory:"),
+                        "memory:\n  branch:\n    deviatoric:\n      law: maxwell\n      tau: 3 s\n"
+                        "    volumetric:\n      law: none\n"
+                        "    fibre:\n      law: maxwell\n      tau: 3 s\n");
     sn_tissue empty = sn_tissue_default();
     CHECK_FAILS(sn_tissue_write(path, &empty, NULL), SN_E_DEFINITION, "no elastic law");
     CHECK_FAILS(sn_tissue_write(scratch_path("no/t.yaml"), &tissue, NULL), SN_E_FILE, "no/t.yaml");
@@ -493,6 +582,7 @@ int main(void) {
         cmocka_unit_test(little_is_needed),
         cmocka_unit_test(lists_are_terms),
         cmocka_unit_test(long_term_constants_are_converted),
+        cmocka_unit_test(branches),
         cmocka_unit_test(bad_tissues_are_refused),
         cmocka_unit_test(sizes_are_refused),
         cmocka_unit_test(mutations_are_survived),

@@ -188,10 +188,12 @@ static void memory_agrees_with_the_machine(void **state) {
     (void)state;
     const double demiray[] = {2.1e3, 9.0, (double)INFINITY};
     const double fibres[] = {2e3, 18.0, 7.0, 5.0, (double)INFINITY};
+    const double artery[] = {2.3e3, 3.1e3, 1.7, 0.09, 0.6, (double)INFINITY};
     const double prony[] = {0.31, 0.27, 0.004, 2.0}, spectrum[] = {0.3, 0.013, 40.0};
-    for (int k = 0; k < 4; ++k) {
-        sn_tissue t =
-            k < 2 ? oracle_tissue("demiray", demiray, 3) : oracle_tissue("guccione", fibres, 5);
+    for (int k = 0; k < 6; ++k) {
+        sn_tissue t = k < 2   ? oracle_tissue("demiray", demiray, 3)
+                      : k < 4 ? oracle_tissue("guccione", fibres, 5)
+                              : oracle_tissue("hgo", artery, 6);
         t.memory = k % 2 ? oracle_memory("prony", 2, prony, 4)
                          : oracle_memory("fung-spectrum", 0, spectrum, 3);
         for (int shear = 0; shear < 2; ++shear) {
@@ -211,6 +213,11 @@ static void memory_agrees_with_the_machine(void **state) {
             assert_true(f.peak > 500.0 && (f.predicted_2 != NULL) == !shear);
             sn_free(f.predicted);
             sn_free(f.predicted_2);
+            sn_tissue branched = t;
+            branched.branched = true;
+            branched.volumetric = branched.fibre = sn_memory_none();
+            CHECK_FAILS(sn_fit_predict(&branched, &c, &f), SN_E_UNSUPPORTED,
+                        shear ? "a branch memory and a shear curve" : "and a biaxial curve");
             sn_curve_release(&c);
             sn_record_destroy(record);
         }

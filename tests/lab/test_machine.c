@@ -438,6 +438,28 @@ static void refusals_say_what_and_where(void **state) {
     sn_history_destroy(h);
 }
 
+// As many rows on a ramp as there are steps at the coarsest, or twice as many: a machine that
+// halves its steps must do so between the rows as well. Against quadrature, to the 1e-7 of the peak
+// that the machine promises.
+static void steps_are_halved_between_dense_rows(void **state) {
+    (void)state;
+    const double v[] = {23.0, 1.3e3}, prony[] = {0.31, 0.27, 0.004, 2.0}, knots[] = {0.0, 1.7},
+                 value[] = {1.0, 1.31};
+    sn_tissue t = oracle_tissue("exponential", v, 2);
+    t.memory = oracle_memory("prony", 2, prony, 4);
+    sn_history *h;
+    CHECK_OK(sn_history_create(1, 2, knots, value, &h));
+    for (int rows = 13; rows <= 37; rows += 12) {
+        double time[37], stress[37];
+        for (int i = 0; i < rows; ++i) time[i] = 1.7 * i / (rows - 1);
+        CHECK_OK(sn_lab_uniaxial(&t, h, rows, time, stress));
+        for (int i = 1; i < rows; ++i)
+            CHECK_ABS(stress[i], oracle_hereditary(h, &t.memory, time[i], exponential_slope, v),
+                      1e-7 * stress[rows - 1]);
+    }
+    sn_history_destroy(h);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exponential_law_follows_quadrature),
@@ -454,6 +476,7 @@ int main(void) {
         cmocka_unit_test(voigt_solid_converges),
         cmocka_unit_test(hysteresis_has_its_closed_forms),
         cmocka_unit_test(refusals_say_what_and_where),
+        cmocka_unit_test(steps_are_halved_between_dense_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,6 +63,12 @@ static void tissues(void **state) {
     c->tissue[0].law = &fibre_law;
     check_refused(c, SN_E_DEFINITION, "has fibres: give their direction");
     c = block_case();
+    c->tissue[0].branched = true;
+    c->tissue[0].volumetric = c->tissue[0].fibre = sn_memory_none();
+    CHECK_OK(sn_case_check(c));
+    c->tissue[0].fibre.law = sn_memory_law_find("maxwell");
+    check_refused(c, SN_E_UNSUPPORTED, "region \"body\": tissue liver: memory branch fibre");
+    c = block_case();
     c->fibre[1] = 0.5;
     check_refused(c, SN_E_RANGE, "length 0.5: 1 expected");
     c = block_case();

@@ -251,6 +251,11 @@ static sn_status predict_in_plane(const sn_tissue *tissue, const sn_curve *curve
     bool memory = tissue->memory.law->param_count > 0;
     sn_exponentials e;
     sn_in_plane *path;
+    if (tissue->branched)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "%s: a branch memory and a %s curve: a prediction takes uniaxial curves, or "
+                       "a tissue with one memory",
+                       curve->name, sn_curve_kind_name(curve->kind));
     SN_TRY(sn_in_plane_check(tissue, curve));
     SN_TRY(sn_memory_expand(&tissue->memory, &e));
     SN_TRY(sn_in_plane_create(curve, curve->time, tissue->law, memory, &path));

@@ -8,9 +8,6 @@
 
 #include "lab/fit/fung.h"
 
-// Steps of the model: level 1 is good to 1e-6 of the peak for the curves people record, and the
-// model is a smooth function of the constants because the steps do not depend on them.
-enum { LEVEL = 1 };
 static const double exponent_max = 40.0; // largest exponent that a bound of a pure number allows
 static const double form_max = 20.0;     // the same of one term of Fung's quadratic form
 static const double beyond = 10.0;       // how residuals grow outside convexity
@@ -320,6 +317,8 @@ static sn_status set_data(sn_problem *p) {
     const sn_fit_def *def = p->def;
     p->sampling = p->ramp = (double)INFINITY;
     SN_TRY(add_curves(p));
+    p->slopes = true;
+    for (int k = 0; k < def->curve_count; ++k) p->slopes = p->slopes && p->path[k];
     if (!(p->peak > 0.0))
         return sn_fail(SN_E_DATA, "%s: the stress is 0 in every row: nothing to fit",
                        def->curve[0].name);
@@ -462,7 +461,8 @@ static sn_status model_stress(sn_problem *p) {
         if (p->plane[k])
             SN_TRY(sn_in_plane_stress(p->plane[k], &p->tissue, &e, p->model + at));
         else
-            SN_TRY(sn_path_stress(p->path[k], &p->tissue, pull, &e, LEVEL, p->model + at));
+            SN_TRY(
+                sn_path_stress(p->path[k], &p->tissue, pull, &e, SN_PROBLEM_LEVEL, p->model + at));
         at += sn_problem_rows(&p->def->curve[k]);
     }
     return SN_OK;

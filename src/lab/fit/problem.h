@@ -18,6 +18,10 @@ typedef struct sn_fit_constant {
     char name[SN_NAME_MAX];
 } sn_fit_constant;
 
+/// Steps of the model: this level is good to 1e-6 of the peak for the curves people record, and the
+/// model is a smooth function of the constants because the steps do not depend on them.
+enum { SN_PROBLEM_LEVEL = 1 };
+
 /// Search points are in the scale of the fit: the logarithm where the table says so, else the
 /// value.
 typedef struct sn_problem {
@@ -32,17 +36,18 @@ typedef struct sn_problem {
     int used;                    ///< of them within the window; the others have weight 0
     sn_path *path[SN_FIT_CURVES_MAX];      ///< of uniaxial curves, else NULL
     sn_in_plane *plane[SN_FIT_CURVES_MAX]; ///< of the others, else NULL
-    double *measured, *weight, *model;     ///< Pa, factor of a residual, Pa     (points)
-    double norm;                           ///< weighted sum of squares of the measurements
-    double peak;                           ///< largest |measured stress|
-    double strain;                         ///< largest |stretch - 1|, or shear
-    double green[3], shear;                ///< largest |E11|, |E22|, |E33|; largest |E12|
-    bool biaxial;                          ///< some curve is
-    bool held[SN_VALUES_MAX];              ///< constants of the law that are fixed
-    double convexity;                      ///< factor that the last point needed (sn_fung_convex)
-    double sampling; ///< shortest sampling interval while the stretch moves, s
-    double ramp;     ///< shortest first ramp, s
-    double record;   ///< longest record, s
+    bool slopes; ///< every curve has sn_path_slopes(); else the residuals take differences
+    double *measured, *weight, *model; ///< Pa, factor of a residual, Pa     (points)
+    double norm;                       ///< weighted sum of squares of the measurements
+    double peak;                       ///< largest |measured stress|
+    double strain;                     ///< largest |stretch - 1|, or shear
+    double green[3], shear;            ///< largest |E11|, |E22|, |E33|; largest |E12|
+    bool biaxial;                      ///< some curve is
+    bool held[SN_VALUES_MAX];          ///< constants of the law that are fixed
+    double convexity;                  ///< factor that the last point needed (sn_fung_convex)
+    double sampling;                   ///< shortest sampling interval while the stretch moves, s
+    double ramp;                       ///< shortest first ramp, s
+    double record;                     ///< longest record, s
     int evaluations;
 } sn_problem;
 
@@ -66,6 +71,10 @@ void sn_problem_settle(sn_problem *problem, double *x);
 /// times 1 + 10 (1 - factor), so that the search comes back.
 /// @return whether the point is feasible.
 bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual);
+/// Derivatives of the weighted residuals by the free constants, in the scale of the fit.
+/// @param jacobian  column of free constant j at [j * points]        (free_count x points)
+/// @return whether the point is feasible; else they are all 0.
+bool sn_problem_jacobian(sn_problem *problem, const double *x, double *jacobian);
 /// Sum of squares after the best common factor on the free stresses; that factor goes into x.
 double sn_problem_scaled_sum(sn_problem *problem, double *x, double *residual);
 /// Whether a row of a curve is fitted: rows outside the window only move the model.

@@ -6,8 +6,8 @@
 // The global stage works on the unit cube of the bounds. Every law is proportional to its constants
 // that are stresses, so their common factor is solved for at each point and the cube loses its
 // longest direction. The best points that are apart from each other start local searches. Bounds
-// become y -> (1 + sin y)/2, so that Levenberg-Marquardt is free. Its Jacobian is by differences:
-// the model is smooth, with noise of 1e-11.
+// become y -> (1 + sin y)/2, so that Levenberg-Marquardt is free. Its Jacobian is that of
+// sn_problem_jacobian().
 #include "lab/fit/search.h"
 
 #include <math.h>
@@ -16,12 +16,11 @@
 #include <cminpack.h>
 #include <nlopt.h>
 
-enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 400, MANY = 6 };
+enum { STARTS_MAX = 16, PER_CONSTANT = 120, LOCAL_CALLS = 200 };
 // rows on which the search for a start is done, in all and at least of every curve
 enum { START_ROWS = 200, START_LEAST = 30 };
 static const double apart = 0.1;       // of the unit cube, largest difference of a coordinate
 static const double near_bound = 0.02; // part of the range
-static const double epsfcn = 1e-10;    // square of the relative step of the differences
 
 typedef struct cube {
     sn_problem *problem;
@@ -105,17 +104,33 @@ typedef struct local {
     int count; // of constants that move
     int moving[SN_FIT_PARAMS_MAX];
     double x[SN_FIT_PARAMS_MAX], low[SN_FIT_PARAMS_MAX], high[SN_FIT_PARAMS_MAX];
+    double *all; // derivatives by all constants                        (free_count x points)
 } local;
 
-static int local_residuals(void *context, int m, int n, const double *y, double *residual,
-                           int flag) {
-    local *l = context;
-    (void)m, (void)flag;
+static void local_point(local *l, int n, const double *y) {
     for (int j = 0; j < n; ++j) {
         int k = l->moving[j];
         l->x[k] = l->low[k] + 0.5 * (1.0 + sin(y[j])) * (l->high[k] - l->low[k]);
     }
-    sn_problem_residuals(l->problem, l->x, residual);
+}
+
+// as lmder wants it: residuals, or their derivatives by y
+static int local_evaluate(void *context, int m, int n, const double *y, double *residual,
+                          double *jacobian, int stride, int what) {
+    local *l = context;
+    local_point(l, n, y);
+    if (what == 1) {
+        sn_problem_residuals(l->problem, l->x, residual);
+        return 0;
+    }
+    sn_problem_jacobian(l->problem, l->x, l->all);
+    for (int j = 0; j < n; ++j) {
+        int k = l->moving[j];
+        double slope = 0.5 * cos(y[j]) * (l->high[k] - l->low[k]); // dx/dy
+        const double *from = l->all + (ptrdiff_t)k * m;
+        double *to = jacobian + (ptrdiff_t)j * stride;
+        for (int i = 0; i < m; ++i) to[i] = slope * from[i];
+    }
     return 0;
 }
 
@@ -138,12 +153,13 @@ sn_status sn_search_local(sn_problem *problem, const bool *hold, double enough, 
     local l = {.problem = problem};
     double y[SN_FIT_PARAMS_MAX], diag[SN_FIT_PARAMS_MAX], qtf[SN_FIT_PARAMS_MAX];
     double wa[3][SN_FIT_PARAMS_MAX];
-    int pivot[SN_FIT_PARAMS_MAX], calls = 0;
+    int pivot[SN_FIT_PARAMS_MAX], calls = 0, slopes = 0;
     local_start(&l, hold, found, y);
     size_t m = (size_t)problem->points, n = (size_t)l.count;
-    double *work = sn_alloc(m * (n + 2), sizeof *work);
+    double *work = sn_alloc(m * (n + 2 + (size_t)problem->free_count), sizeof *work);
     if (!work) return SN_E_MEMORY;
     double *residual = work, *wa4 = work + m, *jacobian = work + 2 * m;
+    l.all = jacobian + m * n;
     if (n == 0) {
         found->info = 1;
         sn_problem_residuals(problem, found->x, residual);
@@ -151,10 +167,11 @@ sn_status sn_search_local(sn_problem *problem, const bool *hold, double enough, 
         sn_free(work);
         return SN_OK;
     }
-    found->info = lmdif(local_residuals, &l, (int)m, (int)n, y, residual, enough, 1e-9, 0.0,
-                        l.count > MANY ? 3 * LOCAL_CALLS : LOCAL_CALLS, epsfcn, diag, 1, 1.0, 0,
-                        &calls, jacobian, (int)m, pivot, qtf, wa[0], wa[1], wa[2], wa4);
-    local_residuals(&l, (int)m, (int)n, y, residual, 1);
+    found->info =
+        lmder(local_evaluate, &l, (int)m, (int)n, y, residual, jacobian, (int)m, enough, 1e-9, 0.0,
+              LOCAL_CALLS, diag, 1, 1.0, 0, &calls, &slopes, pivot, qtf, wa[0], wa[1], wa[2], wa4);
+    local_point(&l, (int)n, y);
+    sn_problem_residuals(problem, l.x, residual);
     memcpy(found->x, l.x, sizeof found->x);
     found->sum = sn_sum_squares(problem->points, residual);
     sn_free(work);

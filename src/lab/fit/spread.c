@@ -8,7 +8,6 @@
 #include "lab/fit/statistics.h"
 
 enum { N = SN_FIT_PARAMS_MAX };
-static const double difference = 1e-4; // of the scale of the fit; error 1e-8, noise 1e-11/1e-4
 
 double sn_student_975(int nu) {
     // the expansion in 1/nu is good to 5e-4 from nu = 4 on
@@ -72,35 +71,11 @@ void sn_eigen_symmetric(int n, double *A, double *value, double *V) {
     }
 }
 
-// Column j of the Jacobian in the scale of the fit. One-sided where one side is not feasible; zero
-// where neither is.
-static void jacobian_column(sn_problem *p, const sn_found *best, int j, double *column,
-                            double *work) {
-    double x[N], *plus = work, *minus = work + p->points, h[2];
-    const sn_fit_constant *c = &p->constant[p->free[j]];
-    double low = sn_problem_scaled(c, c->low), high = sn_problem_scaled(c, c->high);
-    double step = difference;
-    if (!c->param->log_scale) step *= fmax(fabs(best->x[j]), 1e-4 * (high - low));
-    memcpy(x, best->x, sizeof x);
-    x[j] = fmin(high, best->x[j] + step);
-    h[0] = x[j] - best->x[j];
-    bool above = h[0] > 0.0 && sn_problem_residuals(p, x, plus);
-    x[j] = fmax(low, best->x[j] - step);
-    h[1] = best->x[j] - x[j];
-    bool below = h[1] > 0.0 && sn_problem_residuals(p, x, minus);
-    if (!above) h[0] = 0.0;
-    if (!below) h[1] = 0.0;
-    if (!above) sn_problem_residuals(p, best->x, plus);
-    if (!below) sn_problem_residuals(p, best->x, minus);
-    for (int i = 0; i < p->points; ++i)
-        column[i] = above || below ? (plus[i] - minus[i]) / (h[0] + h[1]) : 0.0;
-}
-
 // errors and correlations from the eigenvalues of the scaled matrix
 static void invert(int n, const double *scale, double variance, double *A, sn_spread *spread) {
     double value[N], V[N * N], covariance[N * N];
     sn_eigen_symmetric(n, A, value, V);
-    double least = fmax(value[0], 1e-14 * value[n - 1]); // rounding: below it means 0
+    const double rounding = 1e-14 * value[n - 1], least = fmax(value[0], rounding);
     spread->condition = value[n - 1] / least;
     for (int i = 0; i < n; ++i) spread->weakest[i] = V[i * n];
     for (int i = 0; i < n; ++i)
@@ -117,19 +92,23 @@ static void invert(int n, const double *scale, double variance, double *A, sn_sp
                     ? 1.0
                     : covariance[i * n + j] / sqrt(covariance[i * n + i] * covariance[j * n + j]);
     }
+    // A direction of which the data show nothing but rounding is open, however small the residuals:
+    // so is every constant that has a part in it (the squares of the parts sum to 1).
+    for (int k = 0; k < n && value[k] < rounding; ++k)
+        for (int i = 0; i < n; ++i)
+            if (fabs(V[i * n + k]) > 0.01) spread->error[i] = 1e30;
 }
 
 sn_status sn_spread_at(sn_problem *problem, const sn_found *best, sn_spread *spread) {
     int n = problem->free_count, m = problem->points;
     *spread = (sn_spread){.condition = 1.0, .student = sn_student_975(problem->used - n)};
     if (n == 0) return SN_OK;
-    double *J = sn_alloc((size_t)m * (size_t)(n + 2), sizeof *J);
+    double *J = sn_alloc((size_t)m * (size_t)n, sizeof *J);
     if (!J) return SN_E_MEMORY;
     double scale[N], A[N * N];
+    sn_problem_jacobian(problem, best->x, J);
     for (int j = 0; j < n; ++j) {
-        double *column = J + (size_t)j * (size_t)m;
-        jacobian_column(problem, best, j, column, J + (size_t)n * (size_t)m);
-        scale[j] = sqrt(sn_sum_squares(m, column));
+        scale[j] = sqrt(sn_sum_squares(m, J + (size_t)j * (size_t)m));
         // a constant that moves nothing: an error beyond any bound, and no division by zero
         scale[j] = fmax(scale[j], 1e-12 * sqrt(problem->norm));
     }

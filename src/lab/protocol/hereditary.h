@@ -4,7 +4,7 @@
 
 #include "lab/protocol/path.h"
 
-enum { SN_CHANNELS_MAX = 3 };
+enum { SN_CHANNELS_MAX = 2 * (1 + SN_FIT_PARAMS_MAX) };
 
 /// Elastic stresses f as functions of the number x that drives a test.
 typedef struct sn_channels {
@@ -20,3 +20,10 @@ typedef struct sn_channels {
 /// @return SN_OK, SN_E_MEMORY, what fill returns.
 sn_status sn_path_hereditary(const sn_path *path, const sn_channels *of, const sn_exponentials *e,
                              int level, double *out);
+
+/// Derivatives of the same integrals by `count` constants of the memory, int dG/dp(t - s) df(s),
+/// but for the part own G(t) of each: that is `own` times sn_path_hereditary().
+/// @param out                                        (count x path->count x of->count)
+/// @return SN_OK, SN_E_MEMORY, what fill returns.
+sn_status sn_path_hereditary_slopes(const sn_path *path, const sn_channels *of, int count,
+                                    const sn_memory_slope *slope, int level, double *out);

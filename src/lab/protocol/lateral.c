@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Source: equations (33)-(35) with (32); a face is held at a stretch or loaded with a stress.
 //
-// Nominal stress on the face across axis i, H the hereditary integral, l the stretches:
-//     compressible:    T_i = l_i H[S_ii] + H[K (J - 1)] J/l_i, every stretch that is not held
-//     unknown incompressible:  T_i = l_i H[S_ii] - p/l_i,  l3 = 1/(l1 l2): the third face is always
-//     free of
-//                      load, so p = l3^2 H[S_33] (pulled along one axis the sides of an orthotropic
-//                      law differ, and that both give the same p is the condition for l2).
+// Nominal stress on the face across axis i, H the hereditary integral, l the stretches.
+// Compressible, unknown is every stretch that is not held:
+//     T_i = l_i H[S_ii] + H[K (J - 1)] J/l_i.
+// Incompressible, l3 = 1/(l1 l2), the third face always free of load:
+//     T_i = l_i H[S_ii] - p/l_i,  p = l3^2 H[S_33]
+// (pulled along one axis the sides of an orthotropic law differ, and that both give the same p is
+// the condition for l2). Where the memory is branched, the H of each kind of channel is its own;
+// and where fibres have another memory than the matrix, S_ii is a sum of two channels.
+//
 // The recursion for a step is affine in the new stress, H[S] = a S_new + b, so a trial of the
 // stretches costs one evaluation of the law and touches no memory variable. Newton on the
 // logarithms of the stretches with differences for the matrix: they need no tangent of the volume
@@ -15,41 +18,31 @@
 #include <math.h>
 #include <string.h>
 
-#include "lab/protocol/path.h"
+#include "lab/protocol/block.h"
 
-enum { CHANNELS = 4, TRIALS = 4 }; // S11, S22, S33 distortional, and K (J - 1)
+enum {
+    VOLUME = SN_BLOCK_VOLUME,
+    FIBRES = SN_BLOCK_FIBRES,
+    CHANNELS = SN_BLOCK_CHANNELS,
+    TRIALS = 4
+};
 static const int newton_max = 100;
 static const double difference = 1e-6; // of a logarithm: balances rounding against curvature
 
-typedef struct block {
-    const sn_tissue *tissue;
-    const sn_faces *faces;
-    const sn_exponentials *e;
-    double bulk;                      // INFINITY: incompressible
-    int unknowns, unknown[3];         // faces whose stretch is solved for
-    double time, target[3];           // stretches of held faces, loads of the others, Pa
-    double y[3];                      // logarithms of the stretches
-    double value[CHANNELS];           // elastic, at the end of the last step
-    double H[CHANNELS][SN_TERMS_MAX]; // shares of the exponentials
-    double a, b[CHANNELS];            // affine map of the step at hand
-} block;
+// which of the memories acts on a channel
+static int memory_of(const sn_block *p, int channel) {
+    if (p->memories == 1 || channel < VOLUME) return SN_PART_DEVIATORIC;
+    return channel == VOLUME ? SN_PART_VOLUMETRIC : SN_PART_FIBRE;
+}
 
-// a trial of the stretches and what comes of it
-typedef struct trial {
-    double y[3];
-    double value[CHANNELS]; // elastic channels
-    double stretch[3], nominal[3];
-    double residual[3]; // of the unknown faces, times their stretch
-} trial;
-
-static void stretches_of(const block *p, trial *t) {
+static void stretches_of(const sn_block *p, sn_block_trial *t) {
     for (int i = 0; i < 3; ++i) t->stretch[i] = p->faces->held[i] ? p->target[i] : exp(t->y[i]);
     if (isinf(p->bulk)) t->stretch[2] = 1.0 / (t->stretch[0] * t->stretch[1]);
 }
 
 // elastic channels, total stresses and residuals at n trials
-static void evaluate(const block *p, int n, trial *t) {
-    double E[6 * TRIALS] = {0}, S[6 * TRIALS];
+static void evaluate(const sn_block *p, int n, sn_block_trial *t) {
+    double E[6 * TRIALS] = {0}, S[2][6 * TRIALS];
     SN_ASSERT(n <= TRIALS);
     for (int i = 0; i < n; ++i) {
         stretches_of(p, &t[i]);
@@ -58,16 +51,19 @@ static void evaluate(const block *p, int n, trial *t) {
             E[c * n + i] = 0.5 * (l - 1.0) * (l + 1.0);
         }
     }
-    sn_law_solid(p->tissue->law, p->tissue->value, p->tissue->terms, n, E, NULL, S, NULL);
+    for (int k = 0; k < p->parts; ++k)
+        sn_law_solid(p->tissue->law, p->part[k].value, p->tissue->terms, n, E, NULL, S[k], NULL);
     for (int i = 0; i < n; ++i) {
         const double *l = t[i].stretch;
-        double J = l[0] * l[1] * l[2], total[CHANNELS];
-        for (int c = 0; c < 3; ++c) t[i].value[c] = S[c * n + i];
+        double J = l[0] * l[1] * l[2], total[CHANNELS] = {0.0};
+        for (int k = 0; k < p->parts; ++k)
+            for (int c = 0; c < 3; ++c) t[i].value[(k ? FIBRES : 0) + c] = S[k][c * n + i];
         // U'(J) = K (J - 1) from the logarithm of J: J - 1 itself drowns the rates of stiff solids
         double log_volume = t[i].y[0] + t[i].y[1] + t[i].y[2];
-        t[i].value[3] = isinf(p->bulk) ? 0.0 : p->bulk * expm1(log_volume);
-        for (int c = 0; c < CHANNELS; ++c) total[c] = p->a * t[i].value[c] + p->b[c];
-        double pressure = isinf(p->bulk) ? l[2] * l[2] * total[2] : -total[3] * J;
+        t[i].value[VOLUME] = isinf(p->bulk) ? 0.0 : p->bulk * expm1(log_volume);
+        for (int c = 0; c < p->channels; ++c) total[c] = p->a[c] * t[i].value[c] + p->b[c];
+        for (int c = FIBRES; c < p->channels; ++c) total[c - FIBRES] += total[c];
+        double pressure = isinf(p->bulk) ? l[2] * l[2] * total[2] : -total[VOLUME] * J;
         for (int c = 0; c < 3; ++c) t[i].nominal[c] = l[c] * total[c] - pressure / l[c];
         for (int j = 0; j < p->unknowns; ++j) {
             int c = p->unknown[j];
@@ -76,8 +72,7 @@ static void evaluate(const block *p, int n, trial *t) {
     }
 }
 
-// A x = -r for n <= 3 unknowns by Gauss with pivots; A is used up
-static void solve_small(int n, double A[3][3], const double *r, double *x) {
+void sn_solve_small(int n, double A[3][3], const double *r, double *x) {
     for (int i = 0; i < n; ++i) x[i] = -r[i];
     for (int k = 0; k < n; ++k) {
         int best = k;
@@ -100,12 +95,12 @@ static void solve_small(int n, double A[3][3], const double *r, double *x) {
 
 // Newton's change of the unknowns from a trial and those at a difference in each unknown; its
 // largest, not finite where there is none
-static double newton_change(int n, const trial *t, double change[3]) {
+static double newton_change(int n, const sn_block_trial *t, double change[3]) {
     double A[3][3];
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
             A[i][j] = (t[j + 1].residual[i] - t[0].residual[i]) / difference;
-    solve_small(n, A, t[0].residual, change);
+    sn_solve_small(n, A, t[0].residual, change);
     double size = 0.0, limit = 0.1; // a tenth of the stretch a go: the law stays in its domain
     for (int i = 0; i < n; ++i)
         size = isfinite(change[i]) ? fmax(size, fabs(change[i])) : (double)INFINITY;
@@ -113,7 +108,7 @@ static double newton_change(int n, const trial *t, double change[3]) {
     return size;
 }
 
-static sn_status no_equilibrium(const block *p) {
+static sn_status no_equilibrium(const sn_block *p) {
     for (int i = 0; i < 3; ++i)
         if (!p->faces->held[i] && p->target[i] != 0.0)
             return sn_fail(SN_E_SOLVER,
@@ -127,8 +122,8 @@ static sn_status no_equilibrium(const block *p) {
 }
 
 // solves for the unknown stretches; *now is the equilibrium
-static sn_status solve(block *p, trial *now) {
-    trial t[TRIALS];
+static sn_status solve(sn_block *p, sn_block_trial *now) {
+    sn_block_trial t[TRIALS];
     double change[3];
     int n = p->unknowns;
     memcpy(t[0].y, p->y, sizeof p->y);
@@ -152,7 +147,7 @@ static sn_status solve(block *p, trial *now) {
 
 // Where the faces are at the driving number u. What is held moves the first guess of the others, at
 // constant volume.
-static void drive(block *p, double u) {
+static void drive(sn_block *p, double u) {
     double moved = 0.0;
     int held = 0;
     for (int i = 0; i < 3; ++i) {
@@ -167,46 +162,55 @@ static void drive(block *p, double u) {
         if (!p->faces->held[i]) p->y[i] -= moved / (3 - held);
 }
 
-static void keep(const trial *t, sn_block_row *row) {
+static void keep(const sn_block_trial *t, sn_block_row *row) {
     memcpy(row->stretch, t->stretch, sizeof row->stretch);
     memcpy(row->stress, t->nominal, sizeof row->stress);
 }
 
-static sn_status start(block *p, const sn_path *path, sn_block_row *row) {
-    const sn_exponentials *e = p->e;
-    trial now;
+sn_status sn_block_start(sn_block *p, const sn_path *path, sn_block_row *row) {
+    sn_block_trial now;
+    bool viscous = false;
+    for (int m = 0; m < p->memories; ++m) viscous = viscous || p->e[m].viscous > 0.0;
     p->time = path->time[0];
     drive(p, path->stretch[0]);
-    for (int i = 0; i < 3 && e->viscous > 0.0; ++i) // a dashpot holds against a jump of the load
+    for (int i = 0; i < 3 && viscous; ++i) // a dashpot holds against a jump of the load
         if (!p->faces->held[i]) p->target[i] = 0.0;
-    p->a = 1.0; // a step from rest: G(0) = 1
+    for (int c = 0; c < p->channels; ++c) p->a[c] = 1.0; // a step from rest: G(0) = 1
     SN_TRY(solve(p, &now));
-    for (int c = 0; c < CHANNELS; ++c) {
+    for (int c = 0; c < p->channels; ++c) {
+        const sn_exponentials *e = &p->e[memory_of(p, c)];
         p->value[c] = now.value[c];
         for (int i = 0; i < e->terms; ++i) p->H[c][i] = e->g[i] * now.value[c];
     }
+    if (p->slopes) sn_block_slopes_start(p, &now);
     keep(&now, row);
     return SN_OK;
 }
 
-static sn_status step(block *p, double time, double u, sn_block_row *row) {
-    const sn_exponentials *e = p->e;
-    double decay[SN_TERMS_MAX], gain[SN_TERMS_MAX];
-    double h = time - p->time, viscous = e->viscous / h;
-    trial now;
-    sn_exponentials_factors(e, h, decay, gain);
-    p->a = e->g_inf + viscous;
-    for (int i = 0; i < e->terms; ++i) p->a += gain[i];
-    for (int c = 0; c < CHANNELS; ++c) {
+static sn_status step(sn_block *p, double time, double u, sn_block_row *row) {
+    double decay[SN_PARTS][SN_TERMS_MAX], gain[SN_PARTS][SN_TERMS_MAX], h = time - p->time;
+    sn_block_trial now;
+    for (int m = 0; m < p->memories; ++m) sn_exponentials_factors(&p->e[m], h, decay[m], gain[m]);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        const double *d = decay[m], *g = gain[m];
+        double viscous = p->e[m].viscous / h;
+        p->a[c] = p->e[m].g_inf + viscous;
         p->b[c] = -viscous * p->value[c];
-        for (int i = 0; i < e->terms; ++i) p->b[c] += decay[i] * p->H[c][i] - gain[i] * p->value[c];
+        for (int i = 0; i < p->e[m].terms; ++i) {
+            p->a[c] += g[i];
+            p->b[c] += d[i] * p->H[c][i] - g[i] * p->value[c];
+        }
     }
     p->time = time;
     drive(p, u);
     SN_TRY(solve(p, &now));
-    for (int c = 0; c < CHANNELS; ++c) {
-        for (int i = 0; i < e->terms; ++i)
-            p->H[c][i] = decay[i] * p->H[c][i] + gain[i] * (now.value[c] - p->value[c]);
+    if (p->slopes) sn_block_slopes_step(p, h, decay[0], gain[0], &now);
+    for (int c = 0; c < p->channels; ++c) {
+        int m = memory_of(p, c);
+        double change = now.value[c] - p->value[c];
+        for (int i = 0; i < p->e[m].terms; ++i)
+            p->H[c][i] = decay[m][i] * p->H[c][i] + gain[m][i] * change;
         p->value[c] = now.value[c];
     }
     keep(&now, row);
@@ -226,25 +230,48 @@ static int parts_of(const sn_path *path, int k, int level, double *alpha) {
     return level * (int)fmax(1.0 + ceil(*alpha), parts);
 }
 
-sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_faces *faces,
-                        const sn_exponentials *e, int level, sn_block_row *row) {
+sn_status sn_block_cross(sn_block *p, const sn_path *path, int k, int level, sn_block_row *row) {
+    double alpha, t0 = path->time[k], u0 = path->stretch[k];
+    int parts = parts_of(path, k, level, &alpha);
+    for (int j = 1; j <= parts; ++j) {
+        double part = (double)j / parts;
+        double u = alpha > 0.0 ? expm1(alpha * part) / expm1(alpha) : part;
+        if (j == parts) u = 1.0;
+        double t = j == parts ? path->time[k + 1] : t0 + u * (path->time[k + 1] - t0);
+        SN_TRY(step(p, t, u0 + u * (path->stretch[k + 1] - u0), row));
+    }
+    return SN_OK;
+}
+
+sn_block sn_block_of(const sn_tissue *tissue, const sn_faces *faces, const sn_exponentials *e) {
     sn_moduli moduli;
     tissue->law->moduli(tissue->value, tissue->terms, &moduli);
-    block p = {.tissue = tissue, .faces = faces, .e = e, .bulk = moduli.bulk};
+    sn_block p = {.tissue = tissue, .faces = faces, .e = e, .bulk = moduli.bulk};
     for (int i = 0; i < (isinf(moduli.bulk) ? 2 : 3); ++i)
         if (!faces->held[i]) p.unknown[p.unknowns++] = i;
-    SN_TRY(start(&p, path, &row[0]));
-    for (int k = 0; k + 1 < path->count; ++k) {
-        double alpha, t0 = path->time[k], u0 = path->stretch[k];
-        int parts = parts_of(path, k, level, &alpha);
-        for (int j = 1; j <= parts; ++j) {
-            double part = (double)j / parts;
-            double u = alpha > 0.0 ? expm1(alpha * part) / expm1(alpha) : part;
-            if (j == parts) u = 1.0;
-            double t = j == parts ? path->time[k + 1] : t0 + u * (path->time[k + 1] - t0);
-            SN_TRY(step(&p, t, u0 + u * (path->stretch[k + 1] - u0), &row[k + 1]));
-        }
-    }
+    p.parts = sn_tissue_split(tissue, p.part);
+    p.channels = p.parts > 1 ? CHANNELS : FIBRES;
+    p.memories = tissue->branched ? SN_PARTS : 1;
+    return p;
+}
+
+sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_faces *faces,
+                        const sn_exponentials *e, int level, sn_block_row *row) {
+    sn_block p = sn_block_of(tissue, faces, e);
+    SN_TRY(sn_block_start(&p, path, &row[0]));
+    for (int k = 0; k + 1 < path->count; ++k)
+        SN_TRY(sn_block_cross(&p, path, k, level, &row[k + 1]));
+    return SN_OK;
+}
+
+sn_status sn_path_held(const sn_tissue *tissue, const sn_exponentials *e, double stretch,
+                       sn_block_row *row) {
+    sn_block p = sn_block_of(tissue, &sn_faces_pulled, e);
+    sn_block_trial now;
+    for (int c = 0; c < p.channels; ++c) p.a[c] = p.memories > 1 ? e[memory_of(&p, c)].g_inf : 1.0;
+    drive(&p, stretch);
+    SN_TRY(solve(&p, &now));
+    keep(&now, row);
     return SN_OK;
 }
 

@@ -38,6 +38,7 @@ static void lay_motion(sn_path *path, const sn_history *motion, double rest) {
         high = fmax(high, path->stretch[i]);
     }
     path->range = high - low;
+    path->rest = rest;
 }
 
 sn_status sn_path_lay(const sn_history *motion, double rest, int n, const double *time,
@@ -135,14 +136,57 @@ sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull) {
     return SN_OK;
 }
 
+sn_status sn_path_memory(const sn_tissue *tissue, sn_exponentials e[SN_PARTS], bool *viscous) {
+    *viscous = false;
+    for (int k = 0; k < SN_PARTS; ++k) {
+        if (k > 0 && !tissue->branched)
+            e[k] = e[0];
+        else
+            SN_TRY(sn_memory_expand(sn_tissue_memory(tissue, (sn_part)k), &e[k]));
+        *viscous |= e[k].viscous > 0.0;
+    }
+    return SN_OK;
+}
+
+// the stress of a known motion is a sum over the parts of the elastic stress, each with its memory
+static sn_status stress_of_parts(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
+                                 const sn_exponentials *e, int level, double *stress) {
+    sn_tissue part[2];
+    if (sn_tissue_split(tissue, part) == 1)
+        return sn_path_stress_known(path, &part[0], pull, e, level, stress);
+    double *fibres = sn_alloc((size_t)path->records, sizeof *fibres);
+    if (!fibres) return SN_E_MEMORY;
+    sn_status status = sn_path_stress_known(path, &part[0], pull, e, level, stress);
+    if (status == SN_OK)
+        status = sn_path_stress_known(path, &part[1], pull, &e[SN_PART_FIBRE], level, fibres);
+    for (int i = 0; status == SN_OK && i < path->records; ++i) stress[i] += fibres[i];
+    sn_free(fibres);
+    return status;
+}
+
+// stress of a step under a Voigt memory is an impulse: no number
+static sn_status check_step(const sn_path *path, const sn_tissue *tissue,
+                            const sn_exponentials *e) {
+    int voigt = 0;
+    while (tissue->branched && voigt + 1 < SN_PARTS && e[voigt].viscous == 0.0) ++voigt;
+    if (e[voigt].viscous == 0.0 || path->stretch[0] == 1.0) return SN_OK;
+    return sn_fail(SN_E_RANGE,
+                   "a step to stretch %g at %g s under memory %s has infinite stress: start at "
+                   "stretch 1 and use a ramp",
+                   path->stretch[0], path->time[0],
+                   sn_tissue_memory(tissue, (sn_part)voigt)->law->name);
+}
+
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress) {
-    // stress of a step under a Voigt memory is an impulse: no number
-    if (e->viscous > 0.0 && path->stretch[0] != 1.0)
-        return sn_fail(SN_E_RANGE,
-                       "a step to stretch %g at %g s under memory %s has infinite stress: start at "
-                       "stretch 1 and use a ramp",
-                       path->stretch[0], path->time[0], tissue->memory.law->name);
+    SN_TRY(check_step(path, tissue, e));
     if (pull == SN_PULL_LATERAL) return sn_path_stress_lateral(path, tissue, e, level, stress);
+    if (tissue->branched) return stress_of_parts(path, tissue, pull, e, level, stress);
     return sn_path_stress_known(path, tissue, pull, e, level, stress);
+}
+
+sn_status sn_path_slopes(const sn_pulled *pulled, const sn_constants *by, double *slopes) {
+    SN_TRY(check_step(pulled->path, pulled->tissue, pulled->e));
+    if (pulled->pull == SN_PULL_LATERAL) return sn_path_slopes_lateral(pulled, by, slopes);
+    return sn_path_slopes_known(pulled, by, slopes);
 }

@@ -14,6 +14,7 @@ typedef struct sn_path {
     int records;     ///< number of recorded times
     int *record;     ///< instant of each; -1: before the start        (records)
     double range;    ///< largest less smallest stretch, rest included
+    double rest;     ///< where nothing is stressed
 } sn_path;
 
 /// Lays out a test that is driven by one number, `rest` before it starts.
@@ -39,6 +40,10 @@ sn_status sn_pull_choose(const sn_tissue *tissue, sn_pull *pull);
 /// @return SN_OK, SN_E_UNSUPPORTED, SN_E_RANGE (no usable stress).
 sn_status sn_pull_straight(const sn_tissue *tissue);
 
+/// The memory of every part of a tissue as exponentials; all the same where it is not branched.
+/// @param viscous  whether any of them has a viscous part (Voigt). @return SN_OK, SN_E_RANGE.
+sn_status sn_path_memory(const sn_tissue *tissue, sn_exponentials e[SN_PARTS], bool *viscous);
+
 /// Elastic channels S11 and S22 of SN_PULL_CLOSED, Pa, with their slopes over the stretch.
 /// @param value, slope  (2 x points). @return SN_OK or SN_E_MEMORY.
 sn_status sn_pull_closed(const sn_tissue *tissue, int points, const double *stretch, double *value,
@@ -53,10 +58,33 @@ sn_status sn_pull_strip(const sn_tissue *tissue, int points, const double *stret
 
 /// Nominal stress, Pa, at the recorded times, with `level` times the coarsest steps. A smooth
 /// function of the tissue's constants at a given level, as a fit needs it.
-/// @param e  the tissue's memory as exponentials
+/// @param e  the tissue's memory as exponentials; where it is branched, of every part  (SN_PARTS)
 /// @return SN_OK, SN_E_RANGE (a step under a Voigt memory), SN_E_SOLVER (lateral), SN_E_MEMORY.
 sn_status sn_path_stress(const sn_path *path, const sn_tissue *tissue, sn_pull pull,
                          const sn_exponentials *e, int level, double *stress);
+
+/// What sn_path_stress() takes, in one.
+typedef struct sn_pulled {
+    const sn_path *path;
+    const sn_tissue *tissue;
+    sn_pull pull;
+    const sn_exponentials *e;
+    int level;
+} sn_pulled;
+/// Some constants of a tissue, by their places among the values of law and memory.
+typedef struct sn_constants {
+    int law_count, memory_count;
+    int law[SN_FIT_PARAMS_MAX], memory[SN_FIT_PARAMS_MAX];
+} sn_constants;
+
+/// Derivatives of sn_path_stress() by constants, those of the law first, each over its own unit.
+/// @param slopes  Pa over the unit of the constant    (law_count + memory_count) x records
+/// Not for SN_PULL_STRIP, nor branched tissues. @return as sn_path_stress().
+sn_status sn_path_slopes(const sn_pulled *pulled, const sn_constants *by, double *slopes);
+/// The part of sn_path_slopes() for SN_PULL_UNIAXIAL and SN_PULL_CLOSED.
+sn_status sn_path_slopes_known(const sn_pulled *pulled, const sn_constants *by, double *slopes);
+/// The part of sn_path_slopes() for SN_PULL_LATERAL.
+sn_status sn_path_slopes_lateral(const sn_pulled *pulled, const sn_constants *by, double *slopes);
 
 /// The part of sn_path_stress() for every way but SN_PULL_LATERAL: error of fourth order in
 /// the step, whatever the relaxation times.
@@ -88,7 +116,14 @@ typedef struct sn_block_row {
 /// The block along a path, at all its instants, with `level` times the coarsest steps: the
 /// stretches that are not held are solved for. Second order in the step (first under a Voigt
 /// memory). The volume stress is a channel of its own beside those of the distortional stress.
+/// @param e  the tissue's memory as exponentials; where it is branched, of every part  (SN_PARTS)
 /// @param row                                                             (path->count)
 /// @return SN_OK, SN_E_SOLVER (no equilibrium).
 sn_status sn_path_block(const sn_path *path, const sn_tissue *tissue, const sn_faces *faces,
                         const sn_exponentials *e, int level, sn_block_row *row);
+/// A block that has been pulled to a stretch (sn_faces_pulled) and held for ever: where its sides
+/// stand. Parts that relax differently must all keep a share, G(infinity) > 0. The stresses are
+/// relaxed ones where the tissue is branched, instantaneous ones where it is not.
+/// @param e  as in sn_path_block(). @return SN_OK, SN_E_SOLVER (no equilibrium).
+sn_status sn_path_held(const sn_tissue *tissue, const sn_exponentials *e, double stretch,
+                       sn_block_row *row);

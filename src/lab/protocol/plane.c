@@ -26,7 +26,7 @@ typedef struct plane {
     bool block;       // biaxial test of a compressible solid
     double target[2]; // stretches, or the shear strain
     const sn_path *path;
-    const sn_exponentials *e;
+    const sn_exponentials *e; // of every part of the stress; of the one at hand in add_stress()
 } plane;
 
 // stretches at u, the third the thickness
@@ -131,8 +131,8 @@ static sn_status block_at_level(const plane *p, int level, double *stress) {
     return status;
 }
 
-// the same where the elastic stresses are known functions of u; T_12 (n) in shear
-static sn_status known_at_level(const plane *p, int level, double *stress) {
+// adds the same where the elastic stresses are known functions of u; T_12 (n) in shear
+static sn_status add_stress(const plane *p, int level, double *stress) {
     const sn_path *path = p->path;
     sn_channels of = {channels_of(p), p, fill};
     double *out = sn_alloc((size_t)(path->count * of.count), sizeof *out);
@@ -142,15 +142,29 @@ static sn_status known_at_level(const plane *p, int level, double *stress) {
         double u = path->stretch[path->record[r]], l[3];
         const double *H = out + path->record[r] * of.count;
         if (p->shear) {
-            stress[r] = H[0] + p->target[0] * u * H[1];
+            stress[r] += H[0] + p->target[0] * u * H[1];
             continue;
         }
         stretches_at(p, u, l);
         double pressure = of.count == 3 ? l[2] * l[2] * H[2] : 0.0;
-        for (int i = 0; i < 2; ++i) stress[i * path->records + r] = l[i] * H[i] - pressure / l[i];
+        for (int i = 0; i < 2; ++i) stress[i * path->records + r] += l[i] * H[i] - pressure / l[i];
     }
     sn_free(out);
     return status;
+}
+
+// the nominal stress is a sum over the parts of the elastic stress, each with its memory
+static sn_status known_at_level(const plane *whole, int level, double *stress) {
+    sn_tissue part[2];
+    int parts = sn_tissue_split(whole->tissue, part), columns = whole->shear ? 1 : 2;
+    for (int i = 0; i < columns * whole->path->records; ++i) stress[i] = 0.0;
+    for (int k = 0; k < parts; ++k) {
+        plane p = *whole;
+        p.tissue = &part[k];
+        p.e = &whole->e[k == 0 ? SN_PART_DEVIATORIC : SN_PART_FIBRE];
+        SN_TRY(add_stress(&p, level, stress));
+    }
+    return SN_OK;
 }
 
 static sn_status stress_at_level(const void *context, int level, double *stress) {
@@ -200,15 +214,16 @@ static sn_status fill_record(const plane *p, int n, const double *time, const do
 
 sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *protocol, sn_record *record) {
     SN_TRY(check(tissue, protocol));
-    sn_exponentials e;
-    SN_TRY(sn_memory_expand(&tissue->memory, &e));
-    plane p = {.tissue = tissue, .shear = protocol->kind == SN_PROTOCOL_SHEAR, .e = &e};
+    sn_exponentials e[SN_PARTS];
+    bool viscous;
+    SN_TRY(sn_path_memory(tissue, e, &viscous));
+    plane p = {.tissue = tissue, .shear = protocol->kind == SN_PROTOCOL_SHEAR, .e = e};
     p.target[0] = p.shear ? protocol->shear : protocol->stretch_1;
     p.target[1] = p.shear ? 1.0 : protocol->stretch_2;
     sn_moduli moduli;
     tissue->law->moduli(tissue->value, tissue->terms, &moduli);
     p.block = !p.shear && tissue->law->kind == SN_LAW_SOLID && !isinf(moduli.bulk);
-    double base = !p.block ? 0.0 : e.viscous > 0.0 ? 2.0 : 4.0;
+    double base = !p.block ? 0.0 : viscous ? 2.0 : 4.0;
     const double knots[] = {0.0, protocol->ramp}, drive[] = {0.0, 1.0};
     int n = protocol->points;
     double change;

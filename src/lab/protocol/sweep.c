@@ -17,7 +17,8 @@
 // sides as well. With p the pressure, T_i = l_i H[S_ii] - p/l_i, and for small changes d
 //     dT_i = d_i (Goo S_ii + p/l_i^2) + l_i G* sum_j (dS_ii/dl_j) d_j - dp/l_i,
 //     dp = -kappa sum_j d_j/l_j,   kappa = G* K J^2 + Goo K (J - 1) J   (incompressible: infinite),
-// with dT_2 = dT_3 = 0 three equations for the changes of the sides and of the pressure.
+// with dT_2 = dT_3 = 0 three equations for the changes of the sides and of the pressure. Where the
+// memory is branched, the parts of S_ii come each with their G* and Goo, and the volume with its.
 #include <complex.h>
 #include <math.h>
 
@@ -60,7 +61,9 @@ typedef struct leg_work {
 static sn_status hysteresis_at(const sn_tissue *tissue, double target, double ramp, int cuts,
                                leg_work *work, double *hysteresis) {
     const double knots[] = {0.0, ramp, 2.0 * ramp}, value[] = {1.0, target, 1.0};
-    int panels = tissue->memory.law->impulse ? PANELS_VISCOUS : PANELS;
+    int panels = PANELS;
+    for (int k = 0; k < SN_PARTS; ++k)
+        if (sn_tissue_memory(tissue, (sn_part)k)->law->impulse) panels = PANELS_VISCOUS;
     int n = leg_nodes(panels, cuts, work->node, work->weight);
     for (int i = 0; i < n; ++i) {
         work->time[i] = ramp * work->node[i];
@@ -103,7 +106,7 @@ static sn_status hysteresis_refined(const sn_tissue *tissue, double target, doub
 sn_status sn_test_hysteresis(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
     double *ramp;
     leg_work work = {NULL, NULL, NULL, NULL};
-    SN_TRY(sn_memory_check(&tissue->memory));
+    SN_TRY(sn_tissue_check(tissue));
     SN_TRY(sn_protocol_sweep(p, &ramp));
     size_t n = (size_t)(PANELS * NODES) << (CUTS - 1); // nodes of a leg at the most
     sn_status status = SN_E_MEMORY;
@@ -135,45 +138,48 @@ fail:
 // a test about a held stretch
 typedef struct tangent {
     bool solid;
-    double moving, held; // dT/dstretch that goes with G*, and on what has relaxed; not of a solid
-    double l[3], S[3];   // of a solid: stretches, S_ii,
-    double slope[3][3];  // dS_ii/dl_j,
+    double moving, held;   // dT/dstretch that goes with G*, and on what has relaxed; not of a solid
+    double l[3];           // of a solid: stretches,
+    int parts;             // of the distortional stress, which have
+    sn_tissue part[2];     // a memory each,
+    double S[2][3];        // S_ii
+    double slope[2][3][3]; // and dS_ii/dl_j,
     double bulk;
 } tangent;
 
 // stretches of the sides and elastic stresses of a solid that has been held for ever
 static sn_status solid_at(const sn_tissue *tissue, double L, tangent *out) {
-    const double knot = 0.0;
-    sn_exponentials none;
-    sn_memory memory = sn_memory_none();
-    sn_history *held = NULL;
-    sn_path *path = NULL;
+    static const int place[3][3] = {{0, 1, 2}, {1, 6, 7}, {2, 7, 11}}; // upper triangle by rows
+    sn_exponentials e[SN_PARTS];
     sn_block_row row;
     sn_moduli moduli;
-    sn_status status;
-    SN_TRY(sn_memory_expand(&memory, &none));
-    SN_TRY(sn_history_create(1, 1, &knot, &L, &held));
-    SN_TRY_GOTO(status, sn_path_create(held, 1, &knot, &path));
-    // all channels have relaxed by the same factor, so the sides stand where they did at first
-    SN_TRY_GOTO(status, sn_path_block(path, tissue, &sn_faces_pulled, &none, 1, &row));
+    bool viscous;
+    SN_TRY(sn_path_memory(tissue, e, &viscous));
+    for (int k = 0; k < SN_PARTS && tissue->branched; ++k)
+        if (!(e[k].g_inf > 0.0))
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "law %s: a branch with memory %s relaxes to nothing, so a stretch held "
+                           "for ever leaves its sides anywhere: a dynamic test needs branches that "
+                           "keep a share",
+                           tissue->law->name, sn_tissue_memory(tissue, (sn_part)k)->law->name);
+    SN_TRY(sn_path_held(tissue, e, L, &row));
     double E[6] = {0}, S[6], D[21];
     for (int i = 0; i < 3; ++i) {
         out->l[i] = row.stretch[i];
         E[i] = 0.5 * (out->l[i] - 1.0) * (out->l[i] + 1.0);
     }
-    sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, E, NULL, S, D);
-    static const int place[3][3] = {{0, 1, 2}, {1, 6, 7}, {2, 7, 11}}; // upper triangle by rows
-    for (int i = 0; i < 3; ++i) {
-        out->S[i] = S[i];
-        for (int j = 0; j < 3; ++j) out->slope[i][j] = D[place[i][j]] * out->l[j];
+    out->parts = sn_tissue_split(tissue, out->part);
+    for (int k = 0; k < out->parts; ++k) {
+        sn_law_solid(tissue->law, out->part[k].value, tissue->terms, 1, E, NULL, S, D);
+        for (int i = 0; i < 3; ++i) {
+            out->S[k][i] = S[i];
+            for (int j = 0; j < 3; ++j) out->slope[k][i][j] = D[place[i][j]] * out->l[j];
+        }
     }
     tissue->law->moduli(tissue->value, tissue->terms, &moduli);
     out->bulk = moduli.bulk;
     out->solid = true;
-fail:
-    sn_path_destroy(path);
-    sn_history_destroy(held);
-    return status;
+    return SN_OK;
 }
 
 static sn_status tangent_at(const sn_tissue *tissue, double L, tangent *out) {
@@ -191,8 +197,9 @@ static sn_status tangent_at(const sn_tissue *tissue, double L, tangent *out) {
         SN_TRY(solid_at(tissue, L, out));
     }
     bool usable = isfinite(out->moving) && isfinite(out->held);
-    for (int i = 0; i < 3; ++i)
-        usable = usable && isfinite(out->S[i]) && isfinite(out->slope[i][i]);
+    for (int k = 0; k < out->parts; ++k)
+        for (int i = 0; i < 3; ++i)
+            usable = usable && isfinite(out->S[k][i]) && isfinite(out->slope[k][i][i]);
     if (usable) return SN_OK;
     return sn_fail(SN_E_RANGE, "law %s overflows at stretch %g: check the constants",
                    tissue->law->name, L);
@@ -204,21 +211,34 @@ typedef struct response {
     double held;           // G(infinity)
 } response;
 
-// dT/dstretch of a solid, its distortional and its volume stress each with a memory of its own
-static double complex solid_modulus(const tangent *t, response distortion, response volume) {
+static response response_at(const sn_memory *memory, double frequency) {
+    double storage, loss;
+    sn_memory_modulus(memory, two_pi * frequency, &storage, &loss);
+    return (response){storage + loss * (double complex)I, sn_memory_equilibrium(memory)};
+}
+
+// dT/dstretch of a solid, the parts of its distortional stress and its volume stress each with a
+// memory of their own
+static double complex solid_modulus(const tangent *t, const response *distortion, response volume) {
     const double *l = t->l;
-    double J = l[0] * l[1] * l[2];
+    double J = l[0] * l[1] * l[2], held[3] = {0.0};
+    double complex moving[3][3] = {{0.0}};
+    for (int k = 0; k < t->parts; ++k)
+        for (int i = 0; i < 3; ++i) {
+            held[i] += distortion[k].held * t->S[k][i];
+            for (int j = 0; j < 3; ++j) moving[i][j] += distortion[k].moving * t->slope[k][i][j];
+        }
     bool free_volume = !isinf(t->bulk);
     // incompressible: the relaxed stress of the free third face is the pressure
-    double p = free_volume ? -volume.held * sn_volume_stress(t->bulk, J) * J
-                           : l[2] * l[2] * distortion.held * t->S[2];
+    double p =
+        free_volume ? -volume.held * sn_volume_stress(t->bulk, J) * J : l[2] * l[2] * held[2];
     double complex compliance = 0.0; // 1/kappa
     if (free_volume) compliance = 1.0 / (volume.moving * t->bulk * J * J - p);
     // rows: dT_1, dT_2, dT_3 and the volume; columns: d_1, d_2, d_3 and dp
     double complex A[4][4];
     for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) A[i][j] = l[i] * distortion.moving * t->slope[i][j];
-        A[i][i] += distortion.held * t->S[i] + p / (l[i] * l[i]);
+        for (int j = 0; j < 3; ++j) A[i][j] = l[i] * moving[i][j];
+        A[i][i] += held[i] + p / (l[i] * l[i]);
         A[i][3] = -1.0 / l[i];
         A[3][i] = 1.0 / l[i];
     }
@@ -244,17 +264,18 @@ sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_reco
     double *frequency;
     SN_TRY(sn_protocol_sweep(p, &frequency));
     sn_status status;
-    SN_TRY_GOTO(status, sn_memory_check(&tissue->memory));
+    SN_TRY_GOTO(status, sn_tissue_check(tissue));
     SN_TRY_GOTO(status, tangent_at(tissue, p->stretch, &t));
     SN_TRY_GOTO(status, sn_record_add_series(record, "frequency", "Hz"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "storage_modulus", "Pa"));
     SN_TRY_GOTO(status, sn_record_add_series(record, "loss_modulus", "Pa"));
     for (int i = 0; i < p->points; ++i) {
-        double storage, loss;
-        sn_memory_modulus(&tissue->memory, two_pi * frequency[i], &storage, &loss);
-        double complex G = storage + loss * (double complex)I, modulus = G * t.moving + t.held;
-        response g = {G, sn_memory_equilibrium(&tissue->memory)};
-        if (t.solid) modulus = solid_modulus(&t, g, g);
+        response g[2] = {response_at(&tissue->memory, frequency[i])}; // of all that is no solid
+        double complex modulus = g[0].moving * t.moving + t.held;
+        for (int k = 0; k < t.parts; ++k) g[k] = response_at(&t.part[k].memory, frequency[i]);
+        if (t.solid)
+            modulus = solid_modulus(
+                &t, g, response_at(sn_tissue_memory(tissue, SN_PART_VOLUMETRIC), frequency[i]));
         double row[] = {frequency[i], creal(modulus), cimag(modulus)};
         SN_TRY_GOTO(status, sn_record_append(record, row));
     }

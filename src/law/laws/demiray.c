@@ -20,6 +20,14 @@ SN_INLINE invariant_energy energy(const real *p, wide i1, wide i2) {
 SN_LAW_INVARIANT_KERNEL(demiray, INVARIANT_W11)
 
 #if SN_LAW_TABLE
+/// w1 = c/2 exp(b i1)
+static void slopes(const double *p, double i1, invariant_slope out[]) {
+    double power = wide_exp(p[STIFFENING] * i1);
+    out[SHEAR] = (invariant_slope){.w1 = 0.5 * power};
+    out[STIFFENING] = (invariant_slope){.w1 = 0.5 * p[SHEAR] * i1 * power};
+}
+SN_LAW_INVARIANT_SENSITIVITY(2)
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = law_moduli_of(p[SHEAR], p[BULK]);
@@ -39,6 +47,7 @@ const sn_law sn_law_demiray = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

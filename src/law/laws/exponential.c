@@ -21,6 +21,16 @@ SN_INLINE void point(const real *p, wide stretch, uniaxial_point *out) {
 SN_LAW_UNIAXIAL_KERNEL(exponential)
 
 #if SN_LAW_TABLE
+/// dT/dB = C e^2 phi1'(x), x = B e, and phi1' = phi1 - phi2.
+static void sensitivity(const double *p, int terms, int n, const double *stretch, double *dT) {
+    (void)terms;
+    for (int i = 0; i < n; i++) {
+        double e = stretch[i] - 1, x = p[B] * e, one = wide_phi1(x);
+        dT[B * n + i] = p[C] * e * e * (one - wide_phi2(x));
+        dT[C * n + i] = e * one;
+    }
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = (sn_moduli){.young = p[C]};
@@ -39,6 +49,7 @@ const sn_law sn_law_exponential = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

@@ -33,6 +33,18 @@ SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
 SN_LAW_ISOCHORIC_KERNEL(fung_general)
 
 #if SN_LAW_TABLE
+/// Sbar = alpha E + c exp(Q) q
+static void slopes(const double *p, const double E[6], double dS[][6]) {
+    double q[6];
+    orthotropic_times(p + A, E, q);
+    double power = wide_exp(solid_dot(q, E));
+    orthotropic_slopes(E, dS + ALPHA);
+    for (int c = 0; c < 6; c++) dS[SCALE][c] = power * q[c];
+    orthotropic_slopes(E, dS + A);
+    orthotropic_exponential_slopes(p[SCALE] * power, q, E, dS + A);
+}
+SN_LAW_ISOCHORIC_SENSITIVITY(BULK)
+
 /// Shear modulus: of shear in the plane of the second and third axes, S23 = (alpha_s23 + c s23) E23
 /// = 2 mu E23 at rest. Young's modulus is that of the isotropic law with this shear modulus.
 static void moduli(const double *p, int terms, sn_moduli *out) {
@@ -78,6 +90,7 @@ const sn_law sn_law_fung_general = {
     .params = params,
     .check = check,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

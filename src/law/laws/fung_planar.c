@@ -27,6 +27,23 @@ SN_INLINE void point(const real *p, const wide E[3], membrane_point *out) {
 SN_LAW_MEMBRANE_KERNEL(fung_planar)
 
 #if SN_LAW_TABLE
+/// S = c exp(Q) A, so dS/da = c exp(Q) (dQ/da A + dA/da).
+static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {
+    (void)terms;
+    for (int i = 0; i < n; i++) {
+        const double x = E[i], y = E[(ptrdiff_t)n + i], z = E[(ptrdiff_t)2 * n + i];
+        const double A[3] = {p[A1] * x + p[A4] * y, p[A4] * x + p[A2] * y, p[A3] * z};
+        const double dQ[5] = {0, x * x, y * y, 2 * z * z, 2 * x * y};
+        const double dA[5][3] = {{0}, {x, 0, 0}, {0, y, 0}, {0, 0, z}, {y, x, 0}};
+        double power = wide_exp(A[0] * x + A[1] * y + 2 * A[2] * z), scale = p[SCALE] * power;
+        for (int c = 0; c < 3; c++) {
+            dS[(ptrdiff_t)(3 * SCALE + c) * n + i] = power * A[c];
+            for (int k = A1; k <= A4; k++)
+                dS[(ptrdiff_t)(3 * k + c) * n + i] = scale * (dQ[k] * A[c] + dA[k][c]);
+        }
+    }
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     double c = p[SCALE];
@@ -56,6 +73,7 @@ const sn_law sn_law_fung_planar = {
     .params = params,
     .check = check,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

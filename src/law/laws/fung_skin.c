@@ -51,6 +51,37 @@ SN_INLINE void point(const real *p, const wide E[3], membrane_point *out) {
 SN_LAW_MEMBRANE_KERNEL(fung_skin)
 
 #if SN_LAW_TABLE
+/// At one point: with X = exp(Q), of the linear part dS = dA; of c dS = A X; of the constants of Q
+/// dS = c X (dQ A + dA). A is the sum of its constants times their dA, and Q likewise.
+static void slopes(const double *p, double x, double y, double z, double dS[][3]) {
+    enum { LAST = GAMMA5, COUNT = LAST + 1 - A1 };
+    const double xx = x * x, yy = y * y, xy = x * y;
+    const double dQ[COUNT] = {xx, yy, 2 * z * z, 2 * xy, xx * x, yy * y, xx * y, yy * x};
+    const double dA[COUNT][3] = {{x, 0, 0},       {0, y, 0},        {0, 0, z},
+                                 {y, x, 0},       {1.5 * xx, 0, 0}, {0, 1.5 * yy, 0},
+                                 {xy, xx / 2, 0}, {yy / 2, xy, 0}};
+    double Q = 0, A[3] = {0};
+    for (int k = 0; k < COUNT; k++) {
+        Q += p[A1 + k] * dQ[k];
+        for (int c = 0; c < 3; c++) A[c] += p[A1 + k] * dA[k][c];
+    }
+    double X = wide_exp(Q);
+    for (int c = 0; c < 3; c++) {
+        for (int k = 0; k < 4; k++) dS[ALPHA1 + k][c] = dA[k][c];
+        dS[SCALE][c] = A[c] * X;
+        for (int k = 0; k < COUNT; k++) dS[A1 + k][c] = p[SCALE] * X * (dQ[k] * A[c] + dA[k][c]);
+    }
+}
+
+static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {
+    (void)terms;
+    for (int i = 0; i < n; i++) {
+        double one[GAMMA5 + 1][3];
+        slopes(p, E[i], E[(ptrdiff_t)n + i], E[(ptrdiff_t)2 * n + i], one);
+        for (int k = 0; k <= GAMMA5; k++) law_sensitivity_add(dS, 3, n, k, i, one[k]);
+    }
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     double c = p[SCALE];
@@ -96,6 +127,7 @@ const sn_law sn_law_fung_skin = {
     .params = params,
     .check = check,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

@@ -30,6 +30,23 @@ SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
 SN_LAW_ISOCHORIC_KERNEL(guccione)
 
 #if SN_LAW_TABLE
+/// Sbar_i = C exp(Q) b_i E_i, b_i one of three constants: the one of component i is group[i].
+static void slopes(const double *p, const double E[6], double dS[][6]) {
+    static const int group[6] = {BF, BT, BT, BFS, BT, BFS};
+    double q[6], dQ[BULK] = {0};
+    for (int c = 0; c < 6; c++) {
+        q[c] = p[group[c]] * E[c];
+        dQ[group[c]] += (c < 3 ? 1 : 2) * E[c] * E[c];
+    }
+    double power = wide_exp(solid_dot(q, E)), scale = p[SCALE] * power;
+    for (int c = 0; c < 6; c++) {
+        dS[SCALE][c] = power * q[c];
+        for (int k = BF; k <= BFS; k++)
+            dS[k][c] = scale * (dQ[k] * q[c] + (k == group[c] ? E[c] : 0));
+    }
+}
+SN_LAW_ISOCHORIC_SENSITIVITY(BULK)
+
 /// Shear modulus: of shear in the plane across the fibres, S23 = C bt E23 = 2 mu E23 at rest, which
 /// is that of the isotropic law left when bf and bfs sink to bt. Young's modulus belongs to that
 /// isotropic law too.
@@ -61,6 +78,7 @@ const sn_law sn_law_guccione = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

@@ -36,6 +36,8 @@ SN_INLINE void direction(real angle, real *cosine, real *sine) {
 
 typedef struct family {
     wide W;      ///< energy
+    wide e;      ///< strain, 0 where not pulled
+    wide along;  ///< a.G a - 1
     wide f, df;  ///< stress along H and its slope
     wide t;      ///< H:G
     wide dev[6]; ///< Dev H
@@ -50,6 +52,8 @@ SN_INLINE void family_at(const real *p, const isochoric *q, const wide N[6], rea
     wide e = 3 * p[KAPPA] * q->j_m1 + aligned * (q->j_m1 + q->j * along);
     wide_mask pulled = wide_less(wide_set(0), e);
     e = wide_max(wide_set(0), e);
+    out->e = e;
+    out->along = along;
     wide x = p[K2] * e * e;
     wide slope = p[K1] * wide_exp(x);
     out->W = (real)0.5 * p[K1] * (e * e * wide_phi1(x));
@@ -60,6 +64,15 @@ SN_INLINE void family_at(const real *p, const isochoric *q, const wide N[6], rea
         2 * (p[KAPPA] * N[i] + aligned * (A[i] - (1 + along) * third * q->P[i]));
 }
 
+/// N = Dev I
+SN_INLINE void round_part(const isochoric *q, wide N[6]) {
+    wide j3 = q->j * q->j * q->j;
+    SOLID_UNROLL for (int i = 0; i < 6; i++) {
+        wide part = q->g[i] - q->adj[i];
+        N[i] = j3 * (i < 3 ? q->d + part : part);
+    }
+}
+
 SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
     const real third2 = (real)(2.0 / 3.0);
     isochoric q;
@@ -67,11 +80,7 @@ SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
     real c, s;
     wide N[6], dev[6];
     isochoric_split(E, &q);
-    wide j3 = q.j * q.j * q.j;
-    SOLID_UNROLL for (int i = 0; i < 6; i++) {
-        wide part = q.g[i] - q.adj[i];
-        N[i] = j3 * (i < 3 ? q.d + part : part);
-    }
+    round_part(&q, N);
     direction(p[ANGLE], &c, &s);
     family_at(p, &q, N, c, s, &one);
     family_at(p, &q, N, c, -s, &two);
@@ -96,6 +105,46 @@ SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
 SN_LAW_SOLID_KERNEL(hgo)
 
 #if SN_LAW_TABLE
+/// Adds the share of one family, f Dev H, of direction (c, s, 0): by kappa and the angle both f, by
+/// way of e, and Dev H change.
+static void family_slopes(const double *p, const isochoric *q, const double N[6], double c,
+                          double s, double sign, double dev[BULK][6]) {
+    family F;
+    family_at(p, q, N, c, s, &F);
+    const double aligned = 1 - 3 * p[KAPPA], over = p[K2] * F.e * F.e;
+    const double A[6] = {c * c, s * s, 0, c * s, 0, 0};
+    const double turn[6] = {-2 * c * s * sign, 2 * c * s * sign, 0, (c * c - s * s) * sign, 0, 0};
+    double swing = solid_dot(q->g, turn) + turn[0] + turn[1]; // turn:G
+    double by_kappa = -3 * q->j * F.along * F.df, by_angle = aligned * q->j * swing * F.df;
+    for (int i = 0; i < 6; i++) {
+        double round = 2 * (N[i] - 3 * (A[i] - (1 + F.along) / 3 * q->P[i]));
+        double turned = 2 * aligned * (turn[i] - swing / 3 * q->P[i]);
+        dev[K1][i] += F.e * wide_exp(over) * F.dev[i];
+        dev[K2][i] += F.f * F.e * F.e * F.dev[i];
+        dev[KAPPA][i] += by_kappa * F.dev[i] + F.f * round;
+        dev[ANGLE][i] += by_angle * F.dev[i] + F.f * turned;
+    }
+}
+
+static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {
+    (void)terms;
+    double c, s;
+    direction(p[ANGLE], &c, &s);
+    for (int i = 0; i < n; i++) {
+        isochoric q;
+        double e[6], dev[BULK][6] = {{0}};
+        for (int m = 0; m < 6; m++) e[m] = E[(ptrdiff_t)m * n + i];
+        isochoric_split(e, &q);
+        round_part(&q, dev[MU]);
+        family_slopes(p, &q, dev[MU], c, s, 1, dev);
+        family_slopes(p, &q, dev[MU], c, -s, -1, dev);
+        for (int k = 0; k < BULK; k++) {
+            for (int m = 0; m < 6; m++) dev[k][m] *= q.j * q.a_inverse;
+            law_sensitivity_add(dS, 6, n, k, i, dev[k]);
+        }
+    }
+}
+
 /// Of the matrix: at rest the fibres are about to carry.
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
@@ -131,9 +180,11 @@ const sn_law sn_law_hgo = {
     .source = "Gasser, Ogden and Holzapfel, J. R. Soc. Interface 3 (2006) 15",
     .kind = SN_LAW_SOLID,
     .fibres = true,
+    .fibre_constant = "k1",
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

@@ -31,6 +31,20 @@ SN_INLINE void point(const real *p, const wide E[6], solid_point *out) {
 SN_LAW_SOLID_KERNEL(hookean)
 
 #if SN_LAW_TABLE
+/// mu = Y / (2 (1 + nu))
+static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {
+    (void)terms;
+    const double by_young = 1 / (1 + p[POISSON]), by_poisson = -p[YOUNG] * by_young * by_young;
+    for (int i = 0; i < n; i++) {
+        double mean = (E[i] + E[(ptrdiff_t)n + i] + E[(ptrdiff_t)2 * n + i]) / 3;
+        for (int c = 0; c < 6; c++) {
+            double dev = E[(ptrdiff_t)c * n + i] - (c < 3 ? mean : 0);
+            dS[(ptrdiff_t)(6 * YOUNG + c) * n + i] = by_young * dev;
+            dS[(ptrdiff_t)(6 * POISSON + c) * n + i] = by_poisson * dev;
+        }
+    }
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = (sn_moduli){.young = p[YOUNG],
@@ -59,6 +73,7 @@ const sn_law sn_law_hookean = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

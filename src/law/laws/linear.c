@@ -17,6 +17,11 @@ SN_INLINE void point(const real *p, wide stretch, uniaxial_point *out) {
 SN_LAW_UNIAXIAL_KERNEL(linear)
 
 #if SN_LAW_TABLE
+static void sensitivity(const double *p, int terms, int n, const double *stretch, double *dT) {
+    (void)p, (void)terms;
+    for (int i = 0; i < n; i++) dT[i] = stretch[i] - 1;
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = (sn_moduli){.young = p[MODULUS]};
@@ -34,6 +39,7 @@ const sn_law sn_law_linear = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

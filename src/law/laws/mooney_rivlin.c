@@ -19,6 +19,14 @@ SN_INLINE invariant_energy energy(const real *p, wide i1, wide i2) {
 SN_LAW_INVARIANT_KERNEL(mooney_rivlin, INVARIANT_W2)
 
 #if SN_LAW_TABLE
+/// Derivatives of dW/dI1 and dW/dI2 by the constants.
+static void slopes(const double *p, double i1, invariant_slope out[]) {
+    (void)p, (void)i1;
+    out[C1] = (invariant_slope){.w1 = 1};
+    out[C2] = (invariant_slope){.w2 = 1};
+}
+SN_LAW_INVARIANT_SENSITIVITY(2)
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = law_moduli_of(2 * (p[C1] + p[C2]), p[BULK]);
@@ -44,6 +52,7 @@ const sn_law sn_law_mooney_rivlin = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

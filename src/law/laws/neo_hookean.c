@@ -17,6 +17,13 @@ SN_INLINE invariant_energy energy(const real *p, wide i1, wide i2) {
 SN_LAW_INVARIANT_KERNEL(neo_hookean, 0)
 
 #if SN_LAW_TABLE
+/// w1 = mu/2
+static void slopes(const double *p, double i1, invariant_slope out[]) {
+    (void)p, (void)i1;
+    out[SHEAR] = (invariant_slope){.w1 = 0.5};
+}
+SN_LAW_INVARIANT_SENSITIVITY(1)
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = law_moduli_of(p[SHEAR], p[BULK]);
@@ -36,6 +43,7 @@ const sn_law sn_law_neo_hookean = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

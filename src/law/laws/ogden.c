@@ -111,6 +111,35 @@ SN_INLINE void point(const real *p, int terms, const wide E[6], solid_point *out
 SN_LAW_LIST_KERNEL(ogden)
 
 #if SN_LAW_TABLE
+/// S is linear in the b_i, and db_i/dmu = exp(alpha x_i) - 1, db_i/dalpha = mu x_i exp(alpha x_i).
+static void sensitivity(const double *p, int terms, int n, const double *E, double *dS) {
+    for (int i = 0; i < n; i++) {
+        isochoric q;
+        principal main;
+        double e[6], x[3], axes[3][6], mean = 0;
+        for (int c = 0; c < 6; c++) e[c] = E[(ptrdiff_t)c * n + i];
+        isochoric_split(e, &q);
+        principal_of(q.g, &main);
+        for (int a = 0; a < 3; a++) {
+            x[a] = log1(main.value[a]) / 2;
+            mean += x[a] / 3;
+            principal_dyad(&main, a, a, axes[a]);
+        }
+        for (int k = 0; k < 2 * terms; k++) {
+            double mu = p[k % terms], alpha = p[terms + k % terms], b[3], S[6] = {0};
+            for (int a = 0; a < 3; a++) {
+                double y = x[a] - mean;
+                b[a] = k < terms ? wide_expm1(alpha * y) : mu * y * wide_exp(alpha * y);
+            }
+            for (int a = 0; a < 3; a++) {
+                double t = b[a] - (b[0] + b[1] + b[2]) / 3, L = (1 + main.value[a]) / q.a_inverse;
+                for (int c = 0; c < 6; c++) S[c] += t / L * axes[a][c];
+            }
+            law_sensitivity_add(dS, 6, n, k, i, S);
+        }
+    }
+}
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     double shear = 0;
     for (int i = 0; i < terms; i++) shear += p[i] * p[terms + i] / 2;
@@ -158,6 +187,7 @@ const sn_law sn_law_ogden = {
     .params = params,
     .check = check,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif

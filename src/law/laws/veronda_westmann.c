@@ -23,6 +23,14 @@ SN_INLINE invariant_energy energy(const real *p, wide i1, wide i2) {
 SN_LAW_INVARIANT_KERNEL(veronda_westmann, INVARIANT_W2 | INVARIANT_W11)
 
 #if SN_LAW_TABLE
+/// w1 = c1 c2 exp(c2 i1), w2 = -c1 c2/2
+static void slopes(const double *p, double i1, invariant_slope out[]) {
+    double x = p[C2] * i1, power = wide_exp(x);
+    out[C1] = (invariant_slope){.w1 = p[C2] * power, .w2 = -0.5 * p[C2]};
+    out[C2] = (invariant_slope){.w1 = p[C1] * (1 + x) * power, .w2 = -0.5 * p[C1]};
+}
+SN_LAW_INVARIANT_SENSITIVITY(2)
+
 static void moduli(const double *p, int terms, sn_moduli *out) {
     (void)terms;
     *out = law_moduli_of(p[C1] * p[C2], p[BULK]);
@@ -50,6 +58,7 @@ const sn_law sn_law_veronda_westmann = {
     .param_count = sizeof params / sizeof params[0],
     .params = params,
     .moduli = moduli,
+    .sensitivity = sensitivity,
     .kernels = &kernels,
 };
 #endif
