@@ -40,6 +40,9 @@ for isa in scalar sse2 avx2 avx512; do
 done
 line "instruction sets whose history differs from scalar's in any bit" $differing 0
 
+# published benchmarks of the finite elements
+scripts/verify-benchmarks.sh "$sinew" $out/benchmarks || bad=1
+
 # 95 % intervals of fits of random tissues hold the truth as often as they say
 cmake --preset check >/dev/null
 cmake --build --preset check --target verification_coverage >/dev/null

@@ -98,18 +98,28 @@ static int bench_springs(const cli_arguments *arguments) {
 }
 
 static int run(const cli_command *command, int argc, char **argv) {
-    static const char *const subjects[] = {"springs", "fit"};
-    static int (*const functions[])(const cli_arguments *) = {bench_springs, cli_bench_fit};
+    static const char *const subjects[] = {"springs", "fit", "continuum"};
+    cli_bench_choice choice = {.most_nodes = 13000, .repeat = 1};
+    const cli_option options[] = {
+        {"element", CLI_TEXT, "P1|P2P1", NULL, &choice.element, "continuum: only this element"},
+        {"nodes", CLI_INTEGER, "N", NULL, &choice.most_nodes,
+         "continuum: bodies of at most N nodes; 50653 is the largest"},
+        {"repeat", CLI_INTEGER, "N", NULL, &choice.repeat, "continuum: the best of N runs"},
+    };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, NULL, 0, &arguments);
+    int code = cli_parse(command, argc, argv, options, 3, &arguments);
     if (code >= 0) return code;
-    if (arguments.count > 1) return cli_refuse("bench: expected one subject: springs or fit");
-    if (arguments.count == 0) return bench_springs(&arguments);
-    for (int k = 0; k < 2; k++)
-        if (strcmp(arguments.item[0], subjects[k]) == 0) return functions[k](&arguments);
-    return cli_unknown("benchmark", arguments.item[0], subjects, 2);
+    if (arguments.count > 1)
+        return cli_refuse("bench: expected one subject: springs, fit or continuum");
+    const char *subject = arguments.count ? arguments.item[0] : subjects[0];
+    if (!strcmp(subject, "continuum")) return cli_bench_continuum(&arguments, &choice);
+    if (choice.element || choice.most_nodes != 13000 || choice.repeat != 1)
+        return cli_refuse("bench: --element, --nodes and --repeat belong to: bench continuum");
+    if (!strcmp(subject, "springs")) return bench_springs(&arguments);
+    if (!strcmp(subject, "fit")) return cli_bench_fit(&arguments);
+    return cli_unknown("benchmark", subject, subjects, 3);
 }
 
-const cli_command cli_bench = {"bench", "[springs|fit]",
+const cli_command cli_bench = {"bench", "[springs|fit|continuum]",
                                "how fast it runs here, against what the processor allows",
                                "sinew bench springs", run};

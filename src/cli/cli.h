@@ -70,6 +70,14 @@ int cli_unknown(const char *what, const char *word, const char *const *names, in
 
 /// sinew bench fit (bench_fit.c).
 int cli_bench_fit(const cli_arguments *arguments);
+/// What `sinew bench continuum` is to measure.
+typedef struct cli_bench_choice {
+    const char *element; ///< NULL: all
+    int most_nodes;      ///< of a body
+    int repeat;          ///< the best of as many
+} cli_bench_choice;
+/// sinew bench continuum (bench_continuum.c).
+int cli_bench_continuum(const cli_arguments *arguments, const cli_bench_choice *choice);
 
 //---- progress ------------------------------------------------------------------------------------
 

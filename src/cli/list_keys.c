@@ -347,6 +347,24 @@ static const key_row bench_springs[] = {
     {"kernels", "", "instruction set"},
 };
 
+static const key_row bench_continuum[] = {
+    {"results", "", "one object a body"},
+    {"results[].element", "", "P1 or P2P1"},
+    {"results[].nodes", "", "with midsides"},
+    {"results[].cells", "", "tetrahedra"},
+    {"results[].unknowns", "", "free displacements and pressures"},
+    {"results[].steps", "", "of the load"},
+    {"results[].newton_iterations", "", "of all steps"},
+    {"results[].factorisations", "", "of the tangent"},
+    {"results[].applications", "", "of factors, in all linear solutions"},
+    {"results[].residual_ns", "ns", "a cell: the forces once"},
+    {"results[].tangent_ns", "ns", "a cell: the tangent once, insertion included"},
+    {"results[].solve_s", "s", "of the processor: linear solutions"},
+    {"results[].total_s", "s", "of the processor: the whole run"},
+    {"results[].peak_memory_bytes", "B", "of the process; 0 where unknown"},
+    {"machine", "", "processor"},
+};
+
 static const key_row bench_fit[] = {
     {"results", "", "one object a fit"},
     {"results[].what", "", "the data"},
@@ -390,6 +408,7 @@ static const key_table tables[] = {
     TABLE("run", "`sinew run`, summary.json", runs),
     TABLE("compare", "`sinew compare`, compare.json", comparison),
     TABLE("bench-springs", "`sinew bench springs`", bench_springs),
+    TABLE("bench-continuum", "`sinew bench continuum`", bench_continuum),
     TABLE("bench-fit", "`sinew bench fit`", bench_fit),
     TABLE("convert", "`sinew convert`", conversion),
     TABLE("list", "`sinew list`", lists),

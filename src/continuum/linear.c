@@ -72,7 +72,7 @@ static void react(sn_fe_march *m, double s) {
         bool held = p->pattern->row[d] == SN_FE_PRESCRIBED;
         double force = held ? inner[d] : p->external[d];
         if (held) p->residual[d] = inner[d] - p->external[d];
-        work += 0.5 * (force + m->force[d]) * (m->x[d] - m->older[d]);
+        work += 0.5 * (force + m->force[d]) * (m->x[d] - m->past[0][d]);
         m->force[d] = force;
     }
     m->summary->external_work_J += work;
@@ -150,9 +150,9 @@ static sn_status solve(sn_fe_march *m, bool factored) {
 sn_status sn_fe_linear_go(sn_fe_march *m) {
     const sn_fe_schedule *s = &m->schedule;
     for (int k = 0; k < s->count; k++) {
-        double *swap = m->older, clock = sn_clock();
+        double *swap = m->past[0], clock = sn_clock();
         double length = k > 0 ? s->stop[k].time - s->stop[k - 1].time : 0.0;
-        m->older = m->x;
+        m->past[0] = m->x;
         m->x = swap;
         sn_fe_problem_begin(m->problem, (sn_fe_level){s->stop[k].time, 1.0, 0.0});
         SN_TRY(solve(m, k > 0));

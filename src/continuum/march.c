@@ -3,8 +3,10 @@
 //
 // What acts at time 0 already (gravity, constant loads, a history that starts with a jump) is
 // brought on first, in as few instantaneous steps as it takes. Then come the steps in time. The
-// guess for a step is extrapolated from the last two states; after a corner of a history, or where
-// that fails, the tangent at the start of the step carries the prescribed increments into the body.
+// guess for a step is extrapolated from the last two to four states, by the order that leaves the
+// least residual (a smooth path wants the highest, contact and friction a low one); after a corner
+// of a history, or where that fails, the tangent at the start of the step carries the prescribed
+// increments into the body.
 #include "continuum/state.h"
 
 #include <math.h>
@@ -37,10 +39,11 @@ sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *ou
     SN_TRY(sn_fe_measure_create(m->problem, history, output && output->frame, &m->measure));
     size_t dofs = (size_t)m->problem->space->dofs;
     m->x = sn_alloc(dofs, sizeof *m->x);
-    m->older = sn_alloc(dofs, sizeof *m->older);
+    bool room = true;
+    for (int k = 0; k < SN_FE_PAST; k++) room &= !!(m->past[k] = sn_alloc(dofs, sizeof *m->x));
     m->guess = sn_alloc(dofs, sizeof *m->guess);
     m->force = sn_alloc(dofs, sizeof *m->force);
-    return m->x && m->older && m->guess && m->force ? SN_OK : SN_E_MEMORY;
+    return room && m->x && m->guess && m->force ? SN_OK : SN_E_MEMORY;
 }
 
 void sn_fe_march_free(sn_fe_march *m) {
@@ -49,7 +52,7 @@ void sn_fe_march_free(sn_fe_march *m) {
     sn_fe_problem_destroy(m->problem);
     sn_fe_schedule_free(&m->schedule);
     sn_free(m->x);
-    sn_free(m->older);
+    for (int k = 0; k < SN_FE_PAST; k++) sn_free(m->past[k]);
     sn_free(m->guess);
     sn_free(m->force);
     sn_free(m->wall);
@@ -57,19 +60,47 @@ void sn_fe_march_free(sn_fe_march *m) {
 
 //---- one step -----------------------------------------------------------------------------------
 
-static void extrapolate(sn_fe_march *m, double step) {
+// The polynomial through x and the `order` states before it, a step later.
+static void extrapolate(sn_fe_march *m, int order, double step) {
     const sn_fe_problem *p = m->problem;
-    double by = step / m->last_step;
-    for (int d = 0; d < p->space->dofs; d++) m->guess[d] = m->x[d] + by * (m->x[d] - m->older[d]);
+    double weight[SN_FE_PAST + 1]; // Lagrange's, of x and of the past
+    for (int k = 0; k <= order; k++) {
+        double own = k ? m->past_at[k - 1] : 0.0;
+        weight[k] = 1.0;
+        for (int n = 0; n <= order; n++) {
+            double other = n ? m->past_at[n - 1] : 0.0;
+            if (n != k) weight[k] *= (step - other) / (own - other);
+        }
+    }
+    for (int d = 0; d < p->space->dofs; d++) {
+        double sum = 0.0; // of differences, which keeps rounding small
+        for (int k = 1; k <= order; k++) sum += weight[k] * (m->past[k - 1][d] - m->x[d]);
+        m->guess[d] = m->x[d] + sum;
+    }
     for (int d = 0; d < 3 * p->space->nodes; d++)
         if (p->pattern->row[d] == SN_FE_PRESCRIBED) m->guess[d] = p->prescribed[d];
+}
+
+// Extrapolates by the best order.
+static void guess_ahead(sn_fe_march *m, double step) {
+    int best = 1;
+    double least = (double)INFINITY;
+    sn_fe_balance balance;
+    for (int order = m->past_count; order >= 1 && m->past_count > 1; order--) {
+        extrapolate(m, order, step);
+        sn_fe_problem_balance(m->problem, m->guess, &balance);
+        if (!balance.sound || balance.error >= least) continue;
+        least = balance.error;
+        best = order;
+    }
+    extrapolate(m, best, step);
 }
 
 static sn_status attempt(sn_fe_march *m, sn_fe_level level, sn_fe_outcome *out) {
     size_t bytes = (size_t)m->problem->space->dofs * sizeof *m->x;
     sn_fe_problem_begin(m->problem, level);
-    if (m->last_step > 0.0 && level.step > 0.0) {
-        extrapolate(m, level.step);
+    if (m->past_count > 0 && level.step > 0.0) {
+        guess_ahead(m, level.step);
         SN_TRY(sn_fe_newton_solve(&m->newton, false, m->guess, out));
         m->summary->newton_iterations += out->iterations;
         if (out->converged) return SN_OK;
@@ -91,11 +122,16 @@ static void accept(sn_fe_march *m, sn_fe_level level, const sn_fe_outcome *out) 
         m->force[d] = force;
     }
     m->summary->external_work_J += work;
-    double *free = m->older;
-    m->older = m->x;
+    double *free = m->past[SN_FE_PAST - 1];
+    for (int k = SN_FE_PAST - 1; k > 0; k--) {
+        m->past[k] = m->past[k - 1];
+        m->past_at[k] = m->past_at[k - 1] - level.step;
+    }
+    m->past[0] = m->x;
+    m->past_at[0] = -level.step;
+    m->past_count = level.step > 0.0 ? m->past_count + (m->past_count < SN_FE_PAST) : 0;
     m->x = m->guess;
     m->guess = free;
-    m->last_step = level.step;
     m->reached = level;
     m->rounded += out->rounded;
 }
@@ -167,7 +203,7 @@ static sn_status walk(sn_fe_march *m, bool start, double at, double end, int sto
             m->summary->cutbacks++;
             if (0.5 * step < least) give_up(m, start, at, step, out.reason);
             m->limit = 0.5 * step;
-            m->last_step = 0.0;
+            m->past_count = 0;
             continue;
         }
         accept(m, level, &out);
@@ -247,7 +283,7 @@ sn_status sn_fe_march_go(sn_fe_march *m) {
         if (s->stop[k].output) SN_TRY(record(m));
         if (s->stop[k].corner) {
             m->wish = fmin(s->stop[k].first, s->longest);
-            m->last_step = 0.0;
+            m->past_count = 0;
         }
         m->wish = fmin(m->wish, s->longest);
         if (s->stop[k].output && k + 1 < s->count) SN_TRY(sn_fe_state_save(m, s->stop[k].time));

@@ -7,6 +7,8 @@
 #include "continuum/schedule.h"
 #include "sinew/continuum.h"
 
+enum { SN_FE_PAST = 5 }; ///< states before the last that the guess for a step may be drawn from
+
 typedef struct sn_fe_march {
     const sn_case *c;
     const sn_output *output;   ///< Nullable
@@ -17,13 +19,15 @@ typedef struct sn_fe_march {
     sn_fe_problem *problem;
     sn_fe_newton newton;
     sn_fe_measure *measure;
-    double *x, *older;   ///< accepted states: the last and the one before   (dofs)
-    double *guess;       ///< the state being solved for                     (dofs)
-    double *force;       ///< internal forces of x, N                        (dofs)
-    double last_step;    ///< between `older` and x; 0 where there is nothing to extrapolate
-    sn_fe_level reached; ///< level of x
-    double wish, limit;  ///< longest next step: by the schedule, by what failed before
-    double *wall;        ///< seconds of each step
+    double *x;                  ///< the last accepted state                        (dofs)
+    double *past[SN_FE_PAST];   ///< accepted states before it, the latest first     (dofs)
+    double past_at[SN_FE_PAST]; ///< their times less that of x, s; negative
+    int past_count;             ///< how many belong to a smooth stretch that x ends
+    double *guess;              ///< the state being solved for                     (dofs)
+    double *force;              ///< internal forces of x, N                        (dofs)
+    sn_fe_level reached;        ///< level of x
+    double wish, limit;         ///< longest next step: by the schedule, by what failed before
+    double *wall;               ///< seconds of each step
     size_t wall_room, walls;
     int rounded;             ///< steps accepted at rounding level
     double told;             ///< clock of the last progress text

@@ -93,6 +93,18 @@ void sn_fe_problem_begin(sn_fe_problem *p, sn_fe_level level) {
     for (size_t n = 0; n < 3 * (size_t)p->space->nodes; n++) p->prescribed[n] *= level.scale;
 }
 
+static double force_reference(const sn_fe_problem *p, const sn_fe_balance *balance) {
+    return fmax(fmax(balance->reference, p->reference), p->least_reference);
+}
+
+void sn_fe_problem_weigh(sn_fe_problem *p, const sn_fe_balance *balance) {
+    double scale = 0.0;
+    if (!p->space->element.mixed || !p->solver) return;
+    for (int a = 0; a < p->space->corners; a++) scale += p->flux_scale[a] * p->flux_scale[a];
+    sn_fe_solver_weigh(p->solver, p->pattern->row[3 * p->space->nodes],
+                       force_reference(p, balance) / sqrt(scale));
+}
+
 static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) {
     const sn_fe_space *s = p->space;
     double free = 0.0, held = 0.0, external = 0.0, flux = 0.0, scale = 0.0;
@@ -108,8 +120,7 @@ static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) 
     out->force = sqrt(free);
     out->reference = fmax(sqrt(fmax(held, external)), inertia);
     out->volume = scale > 0.0 ? sqrt(flux / scale) : 0.0;
-    double reference = fmax(fmax(out->reference, p->reference), p->least_reference);
-    out->error = fmax(out->force / reference, out->volume);
+    out->error = fmax(out->force / force_reference(p, out), out->volume);
     out->sound = isfinite(out->error);
     if (!out->sound) out->fault = (sn_fe_fault){.cell = s->slot[0], .J = (double)NAN};
 }

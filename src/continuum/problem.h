@@ -55,6 +55,8 @@ void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out
 /// Evaluates the tangent at a sound x, for increments `lift` of prescribed unknowns (Nullable): see
 /// `lifted`.
 void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift);
+/// Makes the linear solver weigh forces and pressure equations as the error of this balance does.
+void sn_fe_problem_weigh(sn_fe_problem *p, const sn_fe_balance *balance);
 /// The part of the tangent that belongs to the cells, without loads, contact and inertia: all there
 /// is of it in linear analysis.
 void sn_fe_problem_stiffness(sn_fe_problem *p, const double *x, const double *lift);

@@ -138,9 +138,10 @@ static void visit_counters(archive *a, sn_fe_march *m) {
     pass(a, &s->newton_iterations, sizeof s->newton_iterations);
     pass(a, &s->cutbacks, sizeof s->cutbacks);
     pass(a, &m->rounded, sizeof m->rounded);
-    double *const numbers[] = {
-        &s->step_s, &s->simulated_s, &s->external_work_J, &m->last_step,
-        &m->wish,   &m->limit,       &m->elapsed,         &m->problem->reference};
+    pass(a, &m->past_count, sizeof m->past_count);
+    pass_doubles(a, m->past_at, SN_FE_PAST);
+    double *const numbers[] = {&s->step_s, &s->simulated_s, &s->external_work_J,   &m->wish,
+                               &m->limit,  &m->elapsed,     &m->problem->reference};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) pass_doubles(a, numbers[k], 1);
     pass(a, s->note, sizeof s->note);
 }
@@ -148,14 +149,14 @@ static void visit_counters(archive *a, sn_fe_march *m) {
 static void visit(archive *a, sn_fe_march *m, double *time, sn_status *status) {
     sn_fe_problem *p = m->problem;
     size_t dofs = (size_t)p->space->dofs;
-    agree(a, 0x316574617473u); // "state1", and the order of bytes
+    agree(a, 0x326574617473u); // "state2", and the order of bytes
     agree(a, fingerprint(m));
     agree(a, dofs);
     agree(a, p->materials->numbers);
     pass_doubles(a, time, 1);
     visit_counters(a, m);
     pass_doubles(a, m->x, dofs);
-    pass_doubles(a, m->older, dofs);
+    for (int k = 0; k < SN_FE_PAST; k++) pass_doubles(a, m->past[k], dofs);
     pass_doubles(a, m->force, dofs);
     pass_doubles(a, p->materials->state, p->materials->numbers);
     size_t pairs = (size_t)m->c->tool_count * (size_t)p->boundary->spots;
@@ -170,6 +171,7 @@ sn_status sn_fe_state_save(sn_fe_march *m, double time) {
     archive a = {.way = COUNT, .good = true};
     sn_status status = SN_OK;
     if (!m->restart || !m->restart->save) return SN_OK;
+    sn_fe_solver_forget(m->problem->solver); // a run that goes on from here has no factors either
     m->elapsed = sn_clock() - m->started;
     visit(&a, m, &time, &status);
     unsigned char *bytes = sn_alloc(a.size, 1);
