@@ -33,6 +33,17 @@ SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
 /// The explicit step, seconds: 0.9 of the stability limit at rest, or the case's own.
 SN_API double sn_net_step(const sn_net *net);
 
+/// The springs of a central net: the nodes of the mesh at their ends (spring_count x 2) and their
+/// stiffness at small strain, N/m (spring_count). Both are Nullable. A region has springs of its
+/// own: an edge between two regions stands twice.
+SN_API void sn_net_springs(const sn_net *net, int *ends, double *stiffness);
+/// Gives every spring of a central net a stiffness of its own, N/m, in the order of
+/// sn_net_springs(): what a calibration found, or springs taken out (0). The volume term stays what
+/// it is. The explicit step is found anew; no state of the net may exist.
+/// @return SN_OK; else the net is as it was: SN_E_UNSUPPORTED (no springs), SN_E_RANGE (negative,
+/// not finite), SN_E_MEMORY.
+SN_API sn_status sn_net_set_spring_stiffness(sn_net *net, const double *stiffness);
+
 SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
 SN_API void sn_state_destroy(sn_state *state); // NULL is allowed
 /// Back to rest.
@@ -70,7 +81,7 @@ SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_ru
 typedef struct sn_springs_bench_plan {
     sn_rung rung;
     bool volume;
-    const char *law; ///< central: exponential; coupled: neo-hookean or demiray. NULL: the first
+    const char *law; ///< central: exponential; others: neo-hookean or demiray. NULL: the first
     int memory_terms, cells, threads;
     sn_precision precision;
 } sn_springs_bench_plan;

@@ -15,9 +15,10 @@ typedef struct bench_model {
 static const bench_model models[] = {{SN_RUNG_CENTRAL, false, "exponential"},
                                      {SN_RUNG_CENTRAL, true, "exponential"},
                                      {SN_RUNG_COUPLED, true, "neo-hookean"},
-                                     {SN_RUNG_COUPLED, true, "demiray"}};
+                                     {SN_RUNG_COUPLED, true, "demiray"},
+                                     {SN_RUNG_SMOOTHED, true, "neo-hookean"}};
 static const int sizes[] = {10, 20, 40}, terms[] = {0, 3};
-enum { MODELS = 4, SIZES = 3, TERMS = 2, THREADS = 2, SINGLE = MODELS * SIZES * TERMS * THREADS };
+enum { MODELS = 5, SIZES = 3, TERMS = 2, THREADS = 2, SINGLE = MODELS * SIZES * TERMS * THREADS };
 enum { PLANS = SINGLE + MODELS }; // the models once more, in double precision
 
 static sn_springs_bench_plan plan_of(int k) {

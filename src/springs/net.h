@@ -26,7 +26,10 @@ typedef struct sn_net_region {
     int cell_block, cell_blocks;
     int spring_block, spring_blocks;
     int point_block, point_blocks;
-    size_t cell_store, spring_store, point_store; ///< first number in the state's store
+    int edge_block, edge_blocks;                  ///< smoothed
+    size_t cell_store, spring_store, point_store; ///< first number in the state's store; of
+                                                  ///< `cell_store` where the law is: at cells, or
+                                                  ///< at smoothed edges
 } sn_net_region;
 
 typedef struct sn_tile_place {
@@ -60,6 +63,15 @@ typedef struct sn_spring {
     double length2, stiffness;
     double volume; ///< of the cells around it
 } sn_spring;
+
+/// An edge of a cell: one of six.
+typedef struct sn_edge_part {
+    int low, high; ///< nodes
+    int slot;      ///< of the cell
+    int side;      ///< which of the six
+    double volume; ///< of the cell
+    double turn;   ///< dihedral angle over a full turn
+} sn_edge_part;
 
 /// Cells around one edge.
 typedef struct sn_fan {
@@ -120,14 +132,18 @@ struct sn_net {
 
     int region_count;
     sn_net_region *region;
-    int cell_blocks, spring_blocks, point_blocks;
+    int cell_blocks, spring_blocks, point_blocks, edge_blocks;
     int *cell_node;          ///<                                     (cell_blocks x 4 x SN_BLOCK)
     int *cell_point;         ///<                                     (cell_blocks x 4 x SN_BLOCK)
     int *cell_slot;          ///< place of each cell of the mesh      (cells)
     int *spring_end;         ///<                                     (spring_blocks x 2 x SN_BLOCK)
     int *spring_share_start; ///< springs of each slot of a cell (cell_blocks x SN_BLOCK + 1)
     int *spring_share;       ///< slot of the spring
-    double *spring_volume;   ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
+    int *edge_start, *edge_cell; ///< smoothed: slots of the cells around each edge
+    int *cell_edge;     ///< smoothed: slots of the edges of each cell (cell_blocks x 6 x SN_BLOCK)
+    int edge_most;      ///< most cells around an edge
+    bool *edge_filling; ///< (edge_blocks x SN_BLOCK)
+    double *spring_volume; ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
     sn_tiles spring_tiles, cell_tiles, fan_tiles; ///< central, coupled, with volume
     int part_count;                               ///< entries of springs, then of cells or fans
     int other_part;                               ///< first entry of cells or fans
@@ -174,6 +190,7 @@ typedef struct sn_scratch {
     void *f;             ///< quads                                (nodes)
     void *part;          ///< quads: forces of the entries of tiles (part_count)
     void *growth;        ///< of the entries of fan tiles
+    void *shape, *piola; ///< smoothed: (cell_blocks, edge_blocks x SN_BLOCK x 12)
     void *pressure;      ///<                                      (point_blocks x SN_BLOCK)
     sn_cell_pass *cells; ///< what kernels are told, by region (region_count)
     sn_spring_pass *springs;
@@ -218,6 +235,13 @@ struct sn_state {
 sn_status sn_net_build_cells(const sn_case *c, sn_net *net);
 /// Edges into springs: `stiffness` class constants or the volume rule.
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net);
+/// Edges with the cells around them, of the smoothed rung.
+sn_status sn_net_build_edges(const sn_case *c, sn_net *net);
+void sn_net_destroy_edges(sn_net *net);
+/// The edges of the cells of a region, sorted by nodes, then by slot of the cell. *parts is
+/// sn_alloc'd for the caller.
+sn_status sn_net_list_parts(const sn_mesh *mesh, const sn_net *net, int region,
+                            sn_edge_part **parts, int *count);
 /// Places the springs of a region, sorted by end 0, in stars.
 sn_status sn_net_place_springs(sn_net *net, sn_net_region *region, const sn_spring *spring,
                                int count);
@@ -248,6 +272,17 @@ sn_status sn_net_build_drive(const sn_case *c, sn_net *net);
 bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face[3], double *body);
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
+
+/// Blocks of the places of a region where a solid law is evaluated: cells, or smoothed edges. None
+/// on the central rung.
+static inline int sn_region_law_blocks(const sn_net *net, const sn_net_region *region) {
+    return net->rung == SN_RUNG_COUPLED    ? region->cell_blocks
+           : net->rung == SN_RUNG_SMOOTHED ? region->edge_blocks
+                                           : 0;
+}
+static inline int sn_region_law_block(const sn_net *net, const sn_net_region *region) {
+    return net->rung == SN_RUNG_SMOOTHED ? region->edge_block : region->cell_block;
+}
 
 /// Calls of the kernels that go over nodes.
 static inline int sn_net_chunks(const sn_net *net) {

@@ -56,8 +56,8 @@ static int compare_double(const void *a, const void *b) {
 
 static void describe(const sn_net *net, sn_run_summary *s) {
     snprintf(s->engine, sizeof s->engine, "springs");
-    snprintf(s->model, sizeof s->model, "%s%s",
-             net->rung == SN_RUNG_CENTRAL ? "central" : "coupled", net->volume ? "+volume" : "");
+    static const char *const rungs[] = {"central", "coupled", "smoothed"};
+    snprintf(s->model, sizeof s->model, "%s%s", rungs[net->rung], net->volume ? "+volume" : "");
     s->nodes = net->nodes;
     s->cells = net->cells;
     s->springs = net->springs;
