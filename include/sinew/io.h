@@ -89,6 +89,8 @@ typedef struct sn_vtu sn_vtu;
 /// @param folder  exists already; files are folder/name.pvd and folder/name_0000.vtu …
 SN_API sn_status sn_vtu_create(const char *folder, const char *name, const sn_mesh *mesh,
                                sn_vtu **vtu);
+/// Goes on after `frames` frames that an earlier run wrote to the same folder at these times.
+SN_API sn_status sn_vtu_continue(sn_vtu *vtu, int frames, const double *time);
 SN_API sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame);
 SN_API void sn_vtu_destroy(sn_vtu *vtu); // NULL is allowed
 
@@ -96,6 +98,9 @@ SN_API void sn_vtu_destroy(sn_vtu *vtu); // NULL is allowed
 
 /// Writes text to path through a temporary name in the same folder.
 SN_API sn_status sn_text_write(const char *path, const char *text, size_t bytes);
+/// Reads a whole file of at most `most` bytes. *text is sn_alloc'd, with a closing zero.
+/// @return SN_OK, SN_E_FILE, SN_E_DATA (too large), SN_E_MEMORY.
+SN_API sn_status sn_text_read(const char *path, size_t most, char **text, size_t *bytes);
 /// Makes a folder and its parents.
 SN_API sn_status sn_folder_make(const char *path);
 /// SHA-256 of a file as 64 hexadecimal digits and a closing zero.

@@ -147,6 +147,8 @@ typedef struct sn_tool {
     sn_history *path; ///< Nullable, owned; displacement of the centre, three channels, m
     sn_history *turn; ///< Nullable, owned; rotation vector about the centre, three channels, rad
     double friction;  ///< Coulomb coefficient
+    double grasp[2];  ///< nodes that touch at the first time are held until the second, s; equal:
+                      ///< never
 } sn_tool;
 
 /// Where a rigid body is: a point x of its own axes stands at centre + turn x.

@@ -100,16 +100,27 @@ static int bench_springs(const cli_arguments *arguments) {
 static int run(const cli_command *command, int argc, char **argv) {
     static const char *const subjects[] = {"springs", "fit"};
     static int (*const functions[])(const cli_arguments *) = {bench_springs, cli_bench_fit};
+    bool haptic = false;
+    double seconds = 5;
+    const cli_option options[] = {
+        {"haptic", CLI_FLAG, NULL, NULL, &haptic,
+         "springs: frames of 1 ms of a poked block, and the largest block that holds them"},
+        {"time", CLI_QUANTITY, "T", "s", &seconds,
+         "how long each size must hold its frames, of simulated time; 5 s"},
+    };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, NULL, 0, &arguments);
+    int code = cli_parse(command, argc, argv, options, 2, &arguments);
     if (code >= 0) return code;
     if (arguments.count > 1) return cli_refuse("bench: expected one subject: springs or fit");
+    if (haptic && arguments.count == 1 && strcmp(arguments.item[0], "springs") != 0)
+        return cli_refuse("bench: --haptic belongs to springs");
+    if (haptic) return cli_bench_haptic(&arguments, seconds);
     if (arguments.count == 0) return bench_springs(&arguments);
     for (int k = 0; k < 2; k++)
         if (strcmp(arguments.item[0], subjects[k]) == 0) return functions[k](&arguments);
     return cli_unknown("benchmark", arguments.item[0], subjects, 2);
 }
 
-const cli_command cli_bench = {"bench", "[springs|fit]",
+const cli_command cli_bench = {"bench", "[springs|fit] [--haptic]",
                                "how fast it runs here, against what the processor allows",
                                "sinew bench springs", run};

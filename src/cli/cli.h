@@ -70,6 +70,8 @@ int cli_unknown(const char *what, const char *word, const char *const *names, in
 
 /// sinew bench fit (bench_fit.c).
 int cli_bench_fit(const cli_arguments *arguments);
+/// sinew bench springs --haptic (bench_haptic.c).
+int cli_bench_haptic(const cli_arguments *arguments, double seconds);
 
 //---- progress ------------------------------------------------------------------------------------
 

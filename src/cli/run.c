@@ -4,7 +4,11 @@
 #include <stdio.h>
 #include <string.h>
 
+#include <unistd.h>
+
 #include "cli/cli.h"
+
+static const size_t state_most = (size_t)1 << 40; // bytes of a saved state: no limit to speak of
 
 // the last row of the history
 static json_t *probes_json(const sn_record *history) {
@@ -58,6 +62,9 @@ static json_t *summary_json(const sn_run_summary *s, const sn_record *history) {
 typedef struct run_context {
     cli_progress progress;
     sn_vtu *vtu;
+    const char *folder;
+    const sn_record *history;
+    bool continues; ///< and no frame has come yet
     int nodes;
     double *displacement; ///< of the last frame                    (nodes x 3)
 } run_context;
@@ -68,7 +75,17 @@ static sn_status take_frame(void *context, const sn_frame *frame) {
         if (strcmp(frame->fields[k].name, "displacement") == 0)
             memcpy(r->displacement, frame->fields[k].value,
                    (size_t)r->nodes * 3 * sizeof *r->displacement);
+    // a run that goes on first hands out again the frame of its last row
+    if (r->continues && r->vtu)
+        SN_TRY(sn_vtu_continue(r->vtu, r->history->rows - 1, r->history->series[0].value));
+    r->continues = false;
     return r->vtu ? sn_vtu_frame(r->vtu, frame) : SN_OK;
+}
+
+static sn_status save_state(void *context, const void *bytes, size_t size) {
+    char path[4096];
+    const run_context *r = context;
+    return sn_text_write(cli_path(path, sizeof path, r->folder, "state.bin"), bytes, size);
 }
 
 static void pass_progress(void *context, double done, const char *text) {
@@ -187,37 +204,73 @@ static void print_summary(const sn_run_summary *s, const sn_record *history, con
 }
 
 typedef sn_status engine_function(const sn_case *c, const sn_output *output,
-                                  sn_run_summary *summary, sn_record *history);
+                                  const sn_checkpoint *checkpoint, sn_run_summary *summary,
+                                  sn_record *history);
 
-static sn_status run_case(const char *path, engine_function *engine, const char *folder,
-                          const cli_arguments *arguments, sn_run_summary *summary) {
+static sn_status run_continuum(const sn_case *c, const sn_output *output,
+                               const sn_checkpoint *checkpoint, sn_run_summary *summary,
+                               sn_record *history) {
+    (void)checkpoint;
+    return sn_continuum_run(c, output, summary, history);
+}
+
+/// What the command was asked for.
+typedef struct run_request {
+    const char *path;
+    engine_function *engine;
+    const char *folder;
+    bool resume;
+    const cli_arguments *arguments;
+} run_request;
+
+// state.bin of the folder; none where the run was stopped before its first output
+static sn_status read_state(const char *folder, char **bytes, size_t *size) {
+    char path[4096];
+    cli_path(path, sizeof path, folder, "state.bin");
+    return access(path, F_OK) == 0 ? sn_text_read(path, state_most, bytes, size) : SN_OK;
+}
+
+static sn_status run_engine(const run_request *request, const sn_case *c, run_context *r,
+                            sn_run_summary *summary, sn_record *history) {
+    sn_output output = {r, take_frame, pass_progress};
+    sn_checkpoint point = {.context = r, .save = r->folder ? save_state : NULL};
+    char *bytes = NULL;
+    sn_status status;
+    if (request->folder) {
+        SN_TRY_GOTO(status, sn_folder_make(request->folder));
+        SN_TRY_GOTO(status, sn_vtu_create(request->folder, "fields", c->mesh, &r->vtu));
+    }
+    if (request->resume) SN_TRY_GOTO(status, read_state(request->folder, &bytes, &point.from_size));
+    point.from = bytes;
+    r->continues = bytes;
+    status = request->engine(c, &output, &point, summary, history);
+    cli_progress_end(&r->progress);
+    if (status != SN_OK) status = sn_fail_within(status, "%s", request->path);
+fail:
+    sn_free(bytes);
+    return status;
+}
+
+static sn_status run_case(const run_request *request, sn_run_summary *summary) {
     sn_case *c = NULL;
     sn_record *history = NULL;
-    run_context r = {.progress = cli_progress_start(arguments)};
-    sn_output output = {&r, take_frame, pass_progress};
+    const char *folder = request->folder;
+    run_context r = {.progress = cli_progress_start(request->arguments), .folder = folder};
     sn_status status;
-    SN_TRY_GOTO(status, sn_case_read(path, &c));
+    SN_TRY_GOTO(status, sn_case_read(request->path, &c));
     SN_TRY_GOTO(status, sn_record_create(c->name, &history));
+    r.history = history;
     r.nodes = c->mesh->node_count;
     r.displacement = sn_alloc((size_t)r.nodes, 3 * sizeof *r.displacement);
     if (!r.displacement) {
         status = SN_E_MEMORY;
         goto fail;
     }
-    if (folder) {
-        SN_TRY_GOTO(status, sn_folder_make(folder));
-        SN_TRY_GOTO(status, sn_vtu_create(folder, "fields", c->mesh, &r.vtu));
-    }
-    status = engine(c, &output, summary, history);
-    cli_progress_end(&r.progress);
-    if (status != SN_OK) {
-        status = sn_fail_within(status, "%s", path);
-        goto fail;
-    }
+    SN_TRY_GOTO(status, run_engine(request, c, &r, summary, history));
     if (folder) SN_TRY_GOTO(status, write_results(folder, c, summary, history, &r));
-    if (arguments->json)
+    if (request->arguments->json)
         cli_print_json(summary_json(summary, history));
-    else if (!arguments->quiet)
+    else if (!request->arguments->quiet)
         print_summary(summary, history, folder);
 fail:
     sn_vtu_destroy(r.vtu);
@@ -229,23 +282,34 @@ fail:
 
 static int run(const cli_command *command, int argc, char **argv) {
     static const char *const engines[] = {"springs", "continuum"};
-    static engine_function *const functions[] = {sn_springs_run, sn_continuum_run};
-    const char *engine = NULL, *folder = NULL;
+    static engine_function *const functions[] = {sn_springs_resume, run_continuum};
+    const char *engine = NULL, *folder = NULL, *resume = NULL;
     const cli_option options[] = {
         {"engine", CLI_TEXT, "NAME", NULL, &engine, "springs or continuum"},
         {"out", CLI_TEXT, "DIR", NULL, &folder,
          "writes report.html, summary.json, history.csv and fields.pvd there"},
+        {"resume", CLI_TEXT, "DIR", NULL, &resume,
+         "goes on where a run of the same case with --out DIR was stopped"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 2, &arguments);
+    int code = cli_parse(command, argc, argv, options, 3, &arguments);
     if (code >= 0) return code;
     if (arguments.count != 1)
         return cli_refuse("run: expected one case file, got %d", arguments.count);
     if (!engine) return cli_refuse("run: --engine is missing: springs or continuum");
+    if (resume && folder)
+        return cli_refuse("run: --resume DIR writes to DIR too: leave --out away");
+    if (resume && strcmp(engine, "continuum") == 0)
+        return cli_refuse("run: --resume needs --engine springs; the continuum saves no state");
     for (int k = 0; k < 2; k++) {
         if (strcmp(engine, engines[k]) != 0) continue;
         sn_run_summary summary = {0};
-        sn_status status = run_case(arguments.item[0], functions[k], folder, &arguments, &summary);
+        const run_request request = {.path = arguments.item[0],
+                                     .engine = functions[k],
+                                     .folder = resume ? resume : folder,
+                                     .resume = resume,
+                                     .arguments = &arguments};
+        sn_status status = run_case(&request, &summary);
         if (status != SN_OK) return cli_fail(status);
         if (summary.converged) return CLI_DONE;
         cli_refuse("%s: %s", arguments.item[0], summary.reason);
@@ -254,7 +318,7 @@ static int run(const cli_command *command, int argc, char **argv) {
     return cli_unknown("engine", engine, engines, 2);
 }
 
-const cli_command cli_run = {"run", "CASE.yaml --engine springs|continuum [--out DIR]",
-                             "one case through the springs or the finite elements",
-                             "sinew run examples/muscle/strip-1s.yaml --engine springs --out out",
-                             run};
+const cli_command cli_run = {
+    "run", "CASE.yaml --engine springs|continuum [--out DIR | --resume DIR]",
+    "one case through the springs or the finite elements",
+    "sinew run examples/muscle/strip-1s.yaml --engine springs --out out", run};

@@ -203,6 +203,21 @@ static sn_status write_file(sn_vtu *vtu) {
     return sn_text_write(vtu->path.text, vtu->file.text, vtu->file.size);
 }
 
+static sn_status list_frame(sn_vtu *vtu, int frame, double time) {
+    sn_buffer_text(&vtu->list, "<DataSet timestep=\"");
+    add_time(&vtu->list, time);
+    sn_buffer_text(&vtu->list, "\" part=\"0\" file=\"");
+    sn_buffer_escape(&vtu->list, vtu->name);
+    sn_buffer_print(&vtu->list, "_%04d.vtu\"/>\n", frame);
+    return vtu->list.status;
+}
+
+sn_status sn_vtu_continue(sn_vtu *vtu, int frames, const double *time) {
+    for (int k = 0; k < frames; k++) SN_TRY(list_frame(vtu, k, time[k]));
+    vtu->frames = frames;
+    return SN_OK;
+}
+
 sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
     fill_frame(vtu, frame);
     vtu->path.size = 0;
@@ -210,12 +225,7 @@ sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
     SN_TRY(write_file(vtu));
 
     size_t before = vtu->list.size;
-    sn_buffer_text(&vtu->list, "<DataSet timestep=\"");
-    add_time(&vtu->list, frame->time);
-    sn_buffer_text(&vtu->list, "\" part=\"0\" file=\"");
-    sn_buffer_escape(&vtu->list, vtu->name);
-    sn_buffer_print(&vtu->list, "_%04d.vtu\"/>\n", vtu->frames);
-    if (vtu->list.status != SN_OK) return vtu->list.status;
+    SN_TRY(list_frame(vtu, vtu->frames, frame->time));
     fill_collection(vtu);
     vtu->path.size = 0;
     sn_buffer_print(&vtu->path, "%s/%s.pvd", vtu->folder, vtu->name);

@@ -22,6 +22,7 @@ static void evaluate(const sn_net *net, const sn_frequency_call *call, const dou
     sn_force_call force = {.precision = SN_DOUBLE,
                            .mode = SN_MEMORY_OFF,
                            .u = u,
+                           .upright = call->upright,
                            .out = call->scratch,
                            .team = call->team};
     sn_net_forces(net, &force);
@@ -147,7 +148,12 @@ sn_status sn_net_find_step(sn_net *net) {
         net->contact_omega2 =
             fmax(net->contact_omega2, net->contact_stiffness[k] / net->mass[net->contact_node[k]]);
     if (status == SN_OK) {
-        const sn_frequency_call call = {u, trial, net->mode, basis, SN_LANCZOS_MAX, &scratch, NULL};
+        const sn_frequency_call call = {.u = u,
+                                        .trial = trial,
+                                        .mode = net->mode,
+                                        .basis = basis,
+                                        .steps = SN_LANCZOS_MAX,
+                                        .scratch = &scratch};
         net->omega2 = search(net, &call);
         double longest =
             SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2 + net->contact_omega2);

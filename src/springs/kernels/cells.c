@@ -96,6 +96,11 @@ SN_INLINE void strain(const sn_cell_pass *pass, cell_block *c) {
         }
         if (pass->volume_mode == SN_VOLUME_CELL)
             wide_store(c->T + 6 * SN_BLOCK + i, bulk * growth(M));
+        if (pass->upright > 0)
+            wide_store(c->T + 6 * SN_BLOCK + i,
+                       wide_load(c->T + 6 * SN_BLOCK + i) +
+                           (real)pass->upright *
+                               wide_min(growth(M) + (real)(1 - SN_UPRIGHT), wide_set(0)));
     }
 }
 
