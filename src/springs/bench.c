@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "springs/bench.h"
 #include "springs/bench_plain.h"
 #include "springs/net.h"
 
@@ -64,9 +65,16 @@ static sn_status bench_tissue(const sn_springs_bench_plan *plan, sn_tissue *t) {
     return SN_OK;
 }
 
-static sn_status bench_case(const sn_springs_bench_plan *plan, sn_case **out) {
+sn_status sn_springs_bench_case(const sn_springs_bench_plan *plan, sn_case **out) {
     const int cells = plan->cells;
     sn_status status;
+    *out = NULL;
+    if (cells < 1 || plan->memory_terms < 0 || plan->memory_terms > SN_TERMS_MAX ||
+        plan->threads < 1)
+        return sn_fail(SN_E_RANGE,
+                       "bench: %d cells, %d exponentials, %d threads; expected 1 or more, 0 to %d, "
+                       "1 or more",
+                       cells, plan->memory_terms, plan->threads, SN_TERMS_MAX);
     SN_TRY(sn_case_create(out));
     sn_case *c = *out;
     c->has_shape = true;
@@ -254,13 +262,7 @@ sn_status sn_springs_bench(const sn_springs_bench_plan *plan, sn_springs_bench_r
     sn_state *state = NULL;
     sn_status status;
     *row = (sn_springs_bench_row){0};
-    if (plan->cells < 1 || plan->memory_terms < 0 || plan->memory_terms > SN_TERMS_MAX ||
-        plan->threads < 1)
-        return sn_fail(SN_E_RANGE,
-                       "bench: %d cells, %d exponentials, %d threads; expected 1 or more, 0 to %d, "
-                       "1 or more",
-                       plan->cells, plan->memory_terms, plan->threads, SN_TERMS_MAX);
-    SN_TRY_GOTO(status, bench_case(plan, &c));
+    SN_TRY_GOTO(status, sn_springs_bench_case(plan, &c));
     SN_TRY_GOTO(status, sn_net_create(c, &net));
     SN_TRY_GOTO(status, sn_state_create(net, &state));
     SN_TRY_GOTO(status, fill_row(net, state, row));

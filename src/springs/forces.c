@@ -1,5 +1,7 @@
 // Calls the kernels in order: volumes, volume points, springs and cells (with smoothed edges
-// between two passes of cells), nodes. SPDX-License-Identifier: Apache-2.0
+// between two passes of cells), nodes.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
 #include <string.h>
 
 #include "springs/net.h"
@@ -42,6 +44,7 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->volume_mode = net->volume_mode;
     pass->bulk = region->bulk;
     pass->pressure = call->out->pressure;
+    pass->upright = call->upright && net->volume ? fmax(20 * region->shear, region->bulk) : 0.0;
     pass->first = sn_region_law_block(net, region);
     pass->shape = call->out->shape;
     pass->piola = call->out->piola;

@@ -23,7 +23,33 @@ static sn_status check_settings(const sn_case *c) {
     return SN_OK;
 }
 
+// what readers refuse too; a mesh that a program made may not have come through them
+static sn_status check_mesh(const sn_mesh *mesh) {
+    unsigned char *used = sn_alloc((size_t)mesh->node_count, 1);
+    if (!used) return SN_E_MEMORY;
+    sn_status status = SN_OK;
+    for (int e = 0; e < mesh->cell_count && status == SN_OK; e++) {
+        for (int a = 0; a < 4; a++) used[mesh->cell[4 * e + a]] = 1;
+        double volume = sn_mesh_cell_volume(mesh, e);
+        if (!(volume > 0))
+            status = sn_fail(SN_E_MESH,
+                             "springs: cell %d has the volume %g m3: it is flat or turned inside "
+                             "out; sn_mesh_finish() turns such cells round",
+                             e, volume);
+    }
+    for (int i = 0; i < mesh->node_count && status == SN_OK; i++)
+        if (!used[i])
+            status = sn_fail(SN_E_MESH, "springs: node %d belongs to no cell: leave it away", i);
+    sn_free(used);
+    return status;
+}
+
 static sn_status check_motion(const sn_case *c) {
+    for (int t = 0; t < c->tool_count; t++)
+        if (c->tool[t].grasp[1] > c->tool[t].grasp[0] &&
+            c->springs.integrator != SN_INTEGRATOR_EXPLICIT)
+            return sn_fail(SN_E_UNSUPPORTED, "tool \"%s\": grasp needs integrator explicit",
+                           c->tool[t].name);
     if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC) return SN_OK;
     char text[SN_TEXT_MAX];
     sn_case_free_motions(c, text);
@@ -333,6 +359,7 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
     SN_TRY(check_settings(c));
     SN_TRY(sn_case_check(c));
     SN_TRY(check_motion(c));
+    SN_TRY(check_mesh(c->mesh));
     sn_net *n = sn_alloc(1, sizeof *n);
     if (!n) return SN_E_MEMORY;
     sn_case ordered = *c;
@@ -342,6 +369,10 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
         n->node_name ? sn_net_order_nodes(c->mesh, &ordered.mesh, n->node_name) : SN_E_MEMORY;
     if (status == SN_OK) status = build(&ordered, n);
     sn_mesh_destroy(ordered.mesh);
+    n->node_place = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_place);
+    if (!n->node_place) status = SN_E_MEMORY;
+    for (int i = 0; i < n->nodes && status == SN_OK; i++) n->node_place[n->node_name[i]] = i;
+    if (status == SN_OK) n->fingerprint = sn_net_fingerprint(n);
     if (status != SN_OK) {
         sn_net_destroy(n);
         return status;
@@ -384,7 +415,7 @@ void sn_net_destroy(sn_net *n) {
                    n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
                    n->spring_volume, n->point_start, n->point_item,         n->point_node,
                    n->point_volume,  n->node_start,  n->node_item,          n->node_position,
-                   n->mass,          n->mode,        n->root_inverse_mass};
+                   n->mass,          n->mode,        n->root_inverse_mass,  n->node_place};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(n);
 }

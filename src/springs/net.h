@@ -98,6 +98,7 @@ typedef struct sn_net_fixed {
 /// Traction or force lumped at nodes, or faces under pressure.
 typedef struct sn_net_load {
     sn_load_kind kind;
+    int name;           ///< number in the case
     sn_history *factor; ///< Nullable, owned
     double pressure;
     int count;     ///< nodes of a traction or force, faces of a pressure
@@ -152,6 +153,7 @@ struct sn_net {
     double *point_volume; ///<                                (point_blocks x SN_BLOCK)
     int *node_start, *node_item; ///< entries of tiles at each node
     int *node_name;              ///< number in the mesh of each node (nodes)
+    int *node_place;             ///< the other way round             (nodes)
     double *node_position;       ///<                         (nodes x 3)
     double *mass;                ///<                               (nodes)
     double *root_inverse_mass;   ///< of free directions, else 0   (nodes x 3)
@@ -177,6 +179,7 @@ struct sn_net {
     int *loaded; ///< nodes that loads and tools can push
     int probe_count;
     sn_net_probe *probe;
+    uint64_t fingerprint; ///< of all that results depend on
 };
 
 /// Factors of the recursion of one region for one step.
@@ -197,6 +200,14 @@ typedef struct sn_scratch {
     sn_point_pass *points;
 } sn_scratch;
 
+/// A node that moves with a tool.
+typedef struct sn_grip {
+    int tool;                        ///< -1: free
+    double at[3];                    ///< in the tool's axes, m
+    double u_before[3], v_before[3]; ///< at the start of the step
+    double way_a[3];                 ///< acceleration of the last step
+} sn_grip;
+
 struct sn_state {
     double time;
     sn_precision precision;
@@ -215,6 +226,15 @@ struct sn_state {
     sn_pose *tool_pose;                ///< where sn_state_set_tool() put it
     bool *tool_set;
     double (*tool_force)[3];
+    double (*tool_torque)[3];  ///< about the tool's centre
+    unsigned char *tool_phase; ///< of a grasp by the case: 0 before, 1 in it, 2 after
+    double *load_factor;       ///< of sn_state_set_load()         (factor_count)
+    double *load_was;          ///< in use at the end of the last step; NAN: that of the case
+    bool *load_set;
+    double *push;                ///< of sn_state_push(), N          (nodes x 3)
+    int *pushed, pushed_count;   ///< nodes that have one
+    sn_grip *grip;               ///<                                (nodes)
+    int *gripped, gripped_count; ///< nodes that tools hold
     // the search for the highest frequency
     void *probe_trial; ///< quads
     double *mode, *basis;
@@ -225,7 +245,8 @@ struct sn_state {
     int check_in, check_every; ///< steps until omega2 is looked at again
     double moved, check_way;   ///< most that a node can have moved since, may move, m
     int warnings;
-    bool broken; ///< a step gave numbers that are not finite; the state was put back to rest
+    bool broken;  ///< a step gave numbers that are not finite; the state was put back to rest
+    bool crushed; ///< volume points were, and some cells may still be
     double damped_energy; ///< taken by damping so far, J
 };
 
@@ -298,6 +319,7 @@ typedef struct sn_force_call {
     const sn_factors *factors; ///< Nullable with SN_MEMORY_OFF
     void *store;               ///< ADVANCE
     const void *history;       ///< TRIAL
+    bool upright;              ///< some cells are crushed (SN_UPRIGHT)
     sn_scratch *out;
     sn_team *team; ///< Nullable: alone
 } sn_force_call;
@@ -319,6 +341,9 @@ double sn_net_next_corner(const sn_net *net, double t);
 bool sn_net_changes(const sn_net *net, double from, double to);
 /// Adds loads to ext (nodes x 3; quads u in the given precision).
 void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext);
+/// The same of one load, with a factor of the caller's.
+void sn_net_add_load(const sn_net *net, int load, double factor, sn_precision precision,
+                     const void *u, double *ext);
 /// Clears ext at the loaded nodes.
 void sn_net_clear_ext(const sn_net *net, double *ext);
 /// Contact with tools: forces into ext, sum by tool into tool_force; `after` may be `before`.
@@ -332,6 +357,8 @@ typedef struct sn_contact_call {
     sn_contact *after;
     double *ext;
     double (*tool_force)[3];
+    double (*tool_torque)[3]; ///< Nullable: about the centre of the pose
+    const sn_grip *grip;      ///< Nullable: nodes that tools hold do not touch them (nodes)
     sn_tangent_sink *tangent;
     void *context;
 } sn_contact_call;
@@ -341,6 +368,30 @@ typedef struct sn_contact_call {
 double sn_net_contact(const sn_net *net, const sn_contact_call *call);
 /// Where a tool is at time t.
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose);
+
+/// Looks whether cells are crushed, from s->now.growth, and from all cells while some were; counts
+/// a warning when it begins.
+void sn_state_look_at_cells(const sn_net *net, sn_state *s);
+
+//---- what is imposed while a state runs ----------------------------------------------------------
+
+/// Factor of a load of the case: the caller's, or that of its time table.
+double sn_state_load_factor(const sn_net *net, const sn_state *s, int load, double t);
+/// Displacement of prescribed direction k at time t, at the end of the last step where `was`.
+double sn_state_prescribed(const sn_net *net, const sn_state *s, const sn_net_fixed *fixed,
+                           double t, bool was);
+/// No loads, pushes or grips but those of the case; tools where the case has them.
+void sn_state_clear_imposed(const sn_net *net, sn_state *s);
+/// Adds pushes to the forces in s->now.f.
+void sn_state_add_pushes(const sn_net *net, sn_state *s);
+/// Keeps the place and velocity of held nodes, at the start of a step.
+void sn_state_remember_grips(sn_state *s);
+/// Takes held nodes to where their tools are at the state's time + h.
+void sn_state_move_grips(const sn_net *net, sn_state *s, double h);
+/// Adds what held nodes give their tools, from the forces in s->now.f.
+void sn_state_pull_tools(const sn_net *net, sn_state *s);
+/// Grasps and releases what the case says for the state's time.
+void sn_state_follow_grasps(const sn_net *net, sn_state *s);
 
 //---- explicit integration -----------------------------------------------------------------------
 
@@ -356,6 +407,7 @@ typedef struct sn_frequency_call {
     int steps;              ///< at most SN_LANCZOS_MAX
     sn_scratch *scratch;    ///< in that precision
     sn_team *team;          ///< Nullable: alone
+    bool upright;           ///< as in sn_force_call
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 #define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
@@ -371,6 +423,13 @@ double sn_net_stable_step(const sn_net *net, double omega2);
 
 static inline double sn_real_at(sn_precision precision, const void *array, size_t i) {
     return precision == SN_SINGLE ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
+
+static inline void sn_real_put(sn_precision precision, void *array, size_t i, double x) {
+    if (precision == SN_SINGLE)
+        ((float *)array)[i] = (float)x;
+    else
+        ((double *)array)[i] = x;
 }
 
 /// A moment of a run, in double: what fields, history and energies are computed from.
@@ -425,10 +484,19 @@ int sn_tangent_solve(const sn_net *net, sn_tangent *tangent, const double *b, do
 
 //---- runs ----------------------------------------------------------------------------------------
 
+/// Memory that a snapshot holds.
+typedef struct sn_piece {
+    void *data;
+    size_t bytes;
+} sn_piece;
+#define SN_PIECES_MAX 64
+uint64_t sn_net_fingerprint(const sn_net *net);
+
 #define SN_WALLS 65536 ///< wall times kept of a run
 typedef struct sn_run {
     const sn_net *net;
-    const sn_output *output; ///< Nullable
+    const sn_output *output;   ///< Nullable
+    const sn_restart *restart; ///< Nullable
     sn_run_summary *summary;
     sn_record *history;
     sn_fields *fields;
@@ -445,6 +513,16 @@ void sn_run_wall(sn_run *run, double seconds);
 void sn_run_progress(sn_run *run, double time);
 /// Row and frame of a moment.
 sn_status sn_run_record(sn_run *run, const sn_moment *moment);
+/// Hands a frame out, without a row: the first thing that a run does that goes on from bytes.
+sn_status sn_run_frame(sn_run *run, const sn_moment *moment);
+static inline bool sn_run_goes_on(const sn_run *run) {
+    return run->restart && run->restart->state;
+}
+/// After every output: saves the run, its state and `own`, what the integrator keeps beside them.
+sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int count);
+/// Takes all that from run->restart->state. @return SN_OK, SN_E_DATA, SN_E_DEFINITION (another
+/// case), SN_E_UNSUPPORTED (another version), SN_E_MEMORY.
+sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count);
 /// Time of output k, or the end of the run; INFINITY after the end.
 double sn_run_output_time(const sn_net *net, long k);
 sn_status sn_run_explicit(sn_run *run);

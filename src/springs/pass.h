@@ -41,6 +41,11 @@
 #define SN_NODE_CHUNK 256                  ///< nodes that one call of a kernel moves or sums
 #define SN_BRANCHES_MAX (SN_TERMS_MAX + 1) ///< exponentials and the viscous part
 
+/// A net that was crushed may stand with cells turned inside out: springs and mean pressures can
+/// balance there. Cells below this part of their volume then get a stress of their own, upright
+/// (J - SN_UPRIGHT), until none is.
+#define SN_UPRIGHT 0.3
+
 /// How an instantaneous stress becomes the stress with memory.
 typedef enum sn_memory_mode {
     SN_MEMORY_OFF,     ///< it stays what it is
@@ -93,6 +98,7 @@ typedef struct sn_cell_pass {
     int terms;
     sn_volume_mode volume_mode;
     double bulk;
+    double upright;        ///< Pa; 0: no cell is crushed. With SN_VOLUME_NODE
     const void *pressure;  ///< at the volume points
     int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< 6 components, 7 with SN_VOLUME_CELL

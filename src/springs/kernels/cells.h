@@ -98,6 +98,18 @@ SN_INLINE void strain(const sn_cell_pass *pass, cell_block *c) {
     }
 }
 
+// the stress that turns a crushed cell round: see SN_UPRIGHT
+SN_INLINE void add_upright(const sn_cell_pass *pass, cell_block *c) {
+    real *p = c->T + 6 * SN_BLOCK;
+    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
+        wide H[9], M[9];
+        load9(c->H, i, H);
+        to_axes(pass, H, M);
+        wide below = wide_min(growth(M) + (real)(1 - SN_UPRIGHT), wide_set(0));
+        wide_store(p + i, wide_load(p + i) + (real)pass->upright * below);
+    }
+}
+
 // F = Q^T + H
 SN_INLINE void deformation(const sn_cell_pass *pass, const real *H, int i, wide F[9]) {
     load9(H, i, F);

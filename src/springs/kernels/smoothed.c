@@ -145,6 +145,7 @@ void SN_KERNEL(sn_shares)(const sn_cell_pass *pass, const sn_tile *tile) {
         const real *volume = (const real *)pass->volume + at;
         gather_piola(pass, at, sum);
         if (nodal) displacement_gradient(pass, &nodes, corner, at, true, &c);
+        if (nodal && pass->upright > 0) add_upright(pass, &c);
         for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
             wide F[9], P[9], V = wide_load(volume + i);
             load9(sum, i, P);
