@@ -31,10 +31,10 @@ typedef struct sn_comparison {
     sn_comparison_model model[SN_COMPARE_MODELS_MAX];
 } sn_comparison;
 
-/// Runs `central` + volume, `coupled` + volume and P1 (what the mesh alone costs) against P2P1 on
-/// the same mesh. The reference's own error is estimated by P2P1 on a coarser mesh (built-in
-/// shapes) or by P2P1 on the refined mesh (others): the difference over 2^2 - 1, order 2 being what
-/// a solution with corners reaches.
+/// Runs `central`, `coupled` and `smoothed`, each + volume, and P1 (what the mesh alone costs)
+/// against P2P1 on the same mesh. The reference's own error is estimated by P2P1 on a coarser mesh
+/// (built-in shapes) or by P2P1 on the refined mesh (others): the difference over 2^2 - 1, order 2
+/// being what a solution with corners reaches.
 SN_API sn_status sn_compare(const sn_case *c, const sn_output *output, sn_comparison *comparison);
 SN_API void sn_comparison_destroy(sn_comparison *comparison);
 

@@ -21,16 +21,6 @@ SN_API sn_status sn_continuum_run(const sn_case *c, const sn_output *output,
 
 //---- going on where a run was killed -------------------------------------------------------------
 
-/// The state of a run, as bytes of this machine and this version.
-typedef struct sn_restart {
-    void *context;
-    /// Nullable: called after every output but the last; the bytes belong to the engine. An error
-    /// stops the run.
-    sn_status (*save)(void *context, const void *state, size_t bytes);
-    const void *state; ///< Nullable: a saved state to go on from
-    size_t bytes;      ///< of it
-} sn_restart;
-
 /// sn_continuum_run() that saves its state, or goes on from a saved one of the same case; steps,
 /// tolerance and times of the case may have changed. The history gets the rows from before too;
 /// frames are handed out from the state on. The answer is that of a run that saved its state and

@@ -100,6 +100,9 @@ SN_API void sn_vtu_destroy(sn_vtu *vtu); // NULL is allowed
 
 /// Writes text to path through a temporary name in the same folder.
 SN_API sn_status sn_text_write(const char *path, const char *text, size_t bytes);
+/// Reads a whole file of at most `most` bytes. *text is sn_alloc'd, with a closing zero.
+/// @return SN_OK, SN_E_FILE, SN_E_DATA (too large), SN_E_MEMORY.
+SN_API sn_status sn_text_read(const char *path, size_t most, char **text, size_t *bytes);
 /// Makes a folder and its parents.
 SN_API sn_status sn_folder_make(const char *path);
 /// SHA-256 of a file as 64 hexadecimal digits and a closing zero.

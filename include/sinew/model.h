@@ -147,6 +147,8 @@ typedef struct sn_tool {
     sn_history *path; ///< Nullable, owned; displacement of the centre, three channels, m
     sn_history *turn; ///< Nullable, owned; rotation vector about the centre, three channels, rad
     double friction;  ///< Coulomb coefficient
+    double grasp[2];  ///< nodes that touch at the first time are held until the second, s; equal:
+                      ///< never
 } sn_tool;
 
 /// Where a rigid body is: a point x of its own axes stands at centre + turn x.
@@ -347,6 +349,17 @@ typedef struct sn_run_summary {
     char reason[SN_TEXT_MAX]; ///< why it stopped early, with numbers; empty when it did not
     char note[SN_TEXT_MAX];   ///< what a reader of the result must know; may be empty
 } sn_run_summary;
+
+/// Where a run puts what it needs to go on, and where it starts from: its state, as bytes of this
+/// machine and this version.
+typedef struct sn_restart {
+    void *context;
+    /// Nullable: called after every output, after the last only by the springs; the bytes belong to
+    /// the engine. An error stops the run.
+    sn_status (*save)(void *context, const void *state, size_t bytes);
+    const void *state; ///< Nullable: a saved state to go on from
+    size_t bytes;      ///< of it
+} sn_restart;
 
 #ifdef __cplusplus
 }

@@ -15,9 +15,10 @@ typedef struct bench_model {
 static const bench_model models[] = {{SN_RUNG_CENTRAL, false, "exponential"},
                                      {SN_RUNG_CENTRAL, true, "exponential"},
                                      {SN_RUNG_COUPLED, true, "neo-hookean"},
-                                     {SN_RUNG_COUPLED, true, "demiray"}};
+                                     {SN_RUNG_COUPLED, true, "demiray"},
+                                     {SN_RUNG_SMOOTHED, true, "neo-hookean"}};
 static const int sizes[] = {10, 20, 40}, terms[] = {0, 3};
-enum { MODELS = 4, SIZES = 3, TERMS = 2, THREADS = 2, SINGLE = MODELS * SIZES * TERMS * THREADS };
+enum { MODELS = 5, SIZES = 3, TERMS = 2, THREADS = 2, SINGLE = MODELS * SIZES * TERMS * THREADS };
 enum { PLANS = SINGLE + MODELS }; // the models once more, in double precision
 
 static sn_springs_bench_plan plan_of(int k) {
@@ -100,26 +101,35 @@ static int bench_springs(const cli_arguments *arguments) {
 static int run(const cli_command *command, int argc, char **argv) {
     static const char *const subjects[] = {"springs", "fit", "continuum"};
     cli_bench_choice choice = {.most_nodes = 13000, .repeat = 1};
+    bool haptic = false;
+    double seconds = 5;
     const cli_option options[] = {
+        {"haptic", CLI_FLAG, NULL, NULL, &haptic,
+         "springs: frames of 1 ms of a poked block, and the largest block that holds them"},
+        {"time", CLI_QUANTITY, "T", "s", &seconds,
+         "haptic: how long each size must hold its frames, of simulated time; 5 s"},
         {"element", CLI_TEXT, "P1|P2P1", NULL, &choice.element, "continuum: only this element"},
         {"nodes", CLI_INTEGER, "N", NULL, &choice.most_nodes,
          "continuum: bodies of at most N nodes; 50653 is the largest"},
         {"repeat", CLI_INTEGER, "N", NULL, &choice.repeat, "continuum: the best of N runs"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 3, &arguments);
+    int code = cli_parse(command, argc, argv, options, 5, &arguments);
     if (code >= 0) return code;
     if (arguments.count > 1)
         return cli_refuse("bench: expected one subject: springs, fit or continuum");
     const char *subject = arguments.count ? arguments.item[0] : subjects[0];
+    if (haptic && strcmp(subject, "springs") != 0)
+        return cli_refuse("bench: --haptic belongs to springs");
     if (!strcmp(subject, "continuum")) return cli_bench_continuum(&arguments, &choice);
     if (choice.element || choice.most_nodes != 13000 || choice.repeat != 1)
         return cli_refuse("bench: --element, --nodes and --repeat belong to: bench continuum");
+    if (haptic) return cli_bench_haptic(&arguments, seconds);
     if (!strcmp(subject, "springs")) return bench_springs(&arguments);
     if (!strcmp(subject, "fit")) return cli_bench_fit(&arguments);
     return cli_unknown("benchmark", subject, subjects, 3);
 }
 
-const cli_command cli_bench = {"bench", "[springs|fit|continuum]",
+const cli_command cli_bench = {"bench", "[springs|fit|continuum] [--haptic]",
                                "how fast it runs here, against what the processor allows",
                                "sinew bench springs", run};

@@ -78,6 +78,8 @@ typedef struct cli_bench_choice {
 } cli_bench_choice;
 /// sinew bench continuum (bench_continuum.c).
 int cli_bench_continuum(const cli_arguments *arguments, const cli_bench_choice *choice);
+/// sinew bench springs --haptic (bench_haptic.c).
+int cli_bench_haptic(const cli_arguments *arguments, double seconds);
 
 //---- progress ------------------------------------------------------------------------------------
 

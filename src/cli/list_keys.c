@@ -365,6 +365,24 @@ static const key_row bench_continuum[] = {
     {"machine", "", "processor"},
 };
 
+static const key_row bench_haptic[] = {
+    {"results", "", "one object a size and number of threads"},
+    {"results[].nodes", "", "of the net"},
+    {"results[].springs", "", "of the net"},
+    {"results[].threads", "", "used"},
+    {"results[].largest", "", "whether it is the largest size that holds 1 ms"},
+    {"results[].frames", "", "of 1 ms of simulated time"},
+    {"results[].steps_per_frame", "", "explicit steps, mean"},
+    {"results[].frame_p50_s", "s", "wall time of a frame: half of them took less"},
+    {"results[].frame_p999_s", "s", "99.9 % of them"},
+    {"results[].frame_max_s", "s", "the longest"},
+    {"results[].real_time_factor", "", "simulated over wall time"},
+    {"results[].force_N", "N", "largest on the sphere"},
+    {"results[].warnings", "", "states recovered"},
+    {"machine", "", "processor"},
+    {"kernels", "", "instruction set"},
+};
+
 static const key_row bench_fit[] = {
     {"results", "", "one object a fit"},
     {"results[].what", "", "the data"},
@@ -409,6 +427,7 @@ static const key_table tables[] = {
     TABLE("compare", "`sinew compare`, compare.json", comparison),
     TABLE("bench-springs", "`sinew bench springs`", bench_springs),
     TABLE("bench-continuum", "`sinew bench continuum`", bench_continuum),
+    TABLE("bench-haptic", "`sinew bench springs --haptic`", bench_haptic),
     TABLE("bench-fit", "`sinew bench fit`", bench_fit),
     TABLE("convert", "`sinew convert`", conversion),
     TABLE("list", "`sinew list`", lists),

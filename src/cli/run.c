@@ -203,9 +203,9 @@ typedef struct run_options {
     int refine;
 } run_options;
 
-// The continuum saves its state beside its results, and goes on from there with --resume.
-static sn_status run_continuum(const sn_case *c, const sn_output *output, const run_options *o,
-                               run_context *r, sn_run_summary *summary, sn_record *history) {
+// Engines save their state beside the results, and go on from there with --resume.
+static sn_status run_engine(const sn_case *c, const sn_output *output, const run_options *o,
+                            run_context *r, sn_run_summary *summary, sn_record *history) {
     char folder[4096];
     void *state = NULL;
     if (o->refine) // sn_alloc'd parts of the estimate belong to the context
@@ -217,7 +217,9 @@ static sn_status run_continuum(const sn_case *c, const sn_output *output, const 
     }
     if (o->resume) SN_TRY(run_state_read(o->folder, &state, &restart.bytes));
     restart.state = state;
-    sn_status status = sn_continuum_resume(c, output, &restart, summary, history);
+    sn_status status = strcmp(o->engine, "continuum") == 0
+                           ? sn_continuum_resume(c, output, &restart, summary, history)
+                           : sn_springs_resume(c, output, &restart, summary, history);
     sn_free(state);
     if (status == SN_OK && o->folder && summary->converged) run_state_remove(o->folder);
     return status;
@@ -243,10 +245,7 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
         SN_TRY_GOTO(status, sn_folder_make(o->folder));
         SN_TRY_GOTO(status, sn_vtu_create(o->folder, "fields", c->mesh, &r.vtu));
     }
-    if (strcmp(o->engine, "continuum") == 0)
-        status = run_continuum(c, &output, o, &r, summary, history);
-    else
-        status = sn_springs_run(c, &output, summary, history);
+    status = run_engine(c, &output, o, &r, summary, history);
     cli_progress_end(&r.progress);
     if (status != SN_OK) {
         status = sn_fail_within(status, "%s", path);
@@ -268,9 +267,8 @@ fail:
 
 // What belongs to one engine, and what excludes each other.
 static int check_options(const run_options *o) {
-    bool springs = strcmp(o->engine, "springs") == 0;
-    if (springs && (o->refine || o->resume))
-        return cli_refuse("run: --%s is for --engine continuum", o->refine ? "refine" : "resume");
+    if (o->refine && strcmp(o->engine, "springs") == 0)
+        return cli_refuse("run: --refine is for --engine continuum");
     if (o->refine && o->resume) return cli_refuse("run: --refine and --resume exclude each other");
     if (o->refine == 1 || o->refine > SN_REFINE_MAX)
         return cli_refuse("--refine: found %d, expected 2 or 3 meshes", o->refine);
@@ -287,7 +285,7 @@ static int run(const cli_command *command, int argc, char **argv) {
         {"refine", CLI_INTEGER, "N", NULL, &o.refine,
          "continuum: 2 or 3 meshes of halved cells, and the error they show"},
         {"resume", CLI_TEXT, "DIR", NULL, &o.resume,
-         "continuum: goes on where the run into DIR was killed"},
+         "goes on where the run of the same case into DIR was killed"},
     };
     cli_arguments arguments;
     int code = cli_parse(command, argc, argv, options, 4, &arguments);

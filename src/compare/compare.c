@@ -218,6 +218,7 @@ typedef struct model_plan {
 static const model_plan plans[] = {
     {"central+volume", sn_springs_run, SN_RUNG_CENTRAL},
     {"coupled+volume", sn_springs_run, SN_RUNG_COUPLED},
+    {"smoothed+volume", sn_springs_run, SN_RUNG_SMOOTHED},
     {"P1 finite elements", sn_continuum_run, SN_RUNG_COUPLED},
 };
 

@@ -10,6 +10,12 @@
 #include "continuum/linear.h"
 
 static sn_status check(const sn_case *c) {
+    for (int t = 0; t < c->tool_count; t++)
+        if (c->tool[t].grasp[1] > c->tool[t].grasp[0])
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "continuum: tool \"%s\": grasp is not supported; it runs on the engine "
+                           "springs, integrator explicit",
+                           c->tool[t].name);
     if (!(c->continuum.tolerance > 0.0) || !(c->continuum.memory_tolerance > 0.0))
         return sn_fail(
             SN_E_RANGE,

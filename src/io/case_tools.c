@@ -64,10 +64,10 @@ static sn_status read_shape(const sn_yaml *map, sn_tool *tool) {
 }
 
 static sn_status read_tool(const sn_yaml *map, const sn_case *c, sn_tool *tool) {
-    static const char *const keys[] = {"name", "sphere", "capsule", "plane",   "mesh",
-                                       "at",   "path",   "turn",    "friction"};
+    static const char *const keys[] = {"name", "sphere", "capsule", "plane",    "mesh",
+                                       "at",   "path",   "turn",    "friction", "grasp"};
     const sn_yaml *node;
-    SN_TRY(sn_yaml_map(map, keys, 9));
+    SN_TRY(sn_yaml_map(map, keys, 10));
     SN_TRY(sn_case_read_name(map, c, tool->name));
     SN_TRY(read_shape(map, tool));
     SN_TRY(sn_yaml_need(map, "at", &node));
@@ -80,6 +80,12 @@ static sn_status read_tool(const sn_yaml *map, const sn_case *c, sn_tool *tool) 
                                   "rows [time, about x, about y, about z] such as "
                                   "[1 s, 0 deg, 0 deg, 30 deg]",
                                   &tool->turn));
+    if ((node = sn_yaml_get(map, "grasp"))) {
+        SN_TRY(sn_yaml_quantities(node, "s", 2, tool->grasp));
+        if (!(tool->grasp[0] >= 0.0 && tool->grasp[1] > tool->grasp[0]))
+            return sn_yaml_expected(node, SN_E_RANGE,
+                                    "two rising times such as [1 s, 2 s], from 0 s on");
+    }
     if (!(node = sn_yaml_get(map, "friction"))) return SN_OK;
     SN_TRY(sn_yaml_quantity(node, "1", &tool->friction));
     if (tool->friction >= 0.0) return SN_OK;

@@ -70,6 +70,10 @@ sn_status sn_file_read(const char *path, size_t most, char **text, size_t *bytes
     return SN_OK;
 }
 
+sn_status sn_text_read(const char *path, size_t most, char **text, size_t *bytes) {
+    return sn_file_read(path, most, text, bytes);
+}
+
 //---- writing -------------------------------------------------------------------------------------
 
 static void outfile_release(sn_outfile *file) {

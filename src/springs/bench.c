@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "springs/bench.h"
 #include "springs/bench_plain.h"
 #include "springs/net.h"
 
@@ -40,7 +41,7 @@ static sn_status bench_law(const sn_springs_bench_plan *plan, sn_tissue *t) {
     } else {
         return sn_fail(SN_E_NAME,
                        "bench: law %s; expected exponential for central, neo-hookean or "
-                       "demiray for coupled",
+                       "demiray for coupled and smoothed",
                        name);
     }
     return sn_tissue_set(t, "bulk_modulus", young / (3 * (1 - 2 * poisson)));
@@ -64,9 +65,16 @@ static sn_status bench_tissue(const sn_springs_bench_plan *plan, sn_tissue *t) {
     return SN_OK;
 }
 
-static sn_status bench_case(const sn_springs_bench_plan *plan, sn_case **out) {
+sn_status sn_springs_bench_case(const sn_springs_bench_plan *plan, sn_case **out) {
     const int cells = plan->cells;
     sn_status status;
+    *out = NULL;
+    if (cells < 1 || plan->memory_terms < 0 || plan->memory_terms > SN_TERMS_MAX ||
+        plan->threads < 1)
+        return sn_fail(SN_E_RANGE,
+                       "bench: %d cells, %d exponentials, %d threads; expected 1 or more, 0 to %d, "
+                       "1 or more",
+                       cells, plan->memory_terms, plan->threads, SN_TERMS_MAX);
     SN_TRY(sn_case_create(out));
     sn_case *c = *out;
     c->has_shape = true;
@@ -110,6 +118,15 @@ static double step_bytes(const sn_net *net) {
     const double fans = sn_tiles_entries(&net->fan_tiles);
     double bytes = springs * (corner * (1 + SN_STAR) / SN_STAR + r + store);
     bytes += sn_tiles_entries(&net->spring_tiles) * (entry + force);
+    if (net->rung == SN_RUNG_SMOOTHED) {
+        // shapes out and in at each edge that shares them, stresses out and in at each cell: what a
+        // cache that holds them all would move is less
+        const double components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
+        const double edges = net->edge_blocks * (double)SN_BLOCK, item = 12 * r;
+        bytes += net->cells * (2 * 4 * corner + 19 * r + item + 6 * index);
+        bytes += edges * (2 * item + index + components * store) + net->cells * 6 * (index + item);
+        bytes += sn_tiles_entries(&net->cell_tiles) * (2 * entry + force + index + r);
+    }
     if (net->rung == SN_RUNG_COUPLED) { // corners, gradient, volume
         const double components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
         bytes += net->cells * (4 * corner + 10 * r + components * store);
@@ -132,7 +149,12 @@ static double step_operations(const sn_net *net) {
     const bool central = net->rung == SN_RUNG_CENTRAL;
     double sum = 40.0 * net->nodes; // sums of entries, kick and drift
     sum += net->springs * (82 + memory);
-    if (!central) {
+    if (net->rung == SN_RUNG_SMOOTHED) {
+        const double law = strcmp(net->region[0].tissue.law->name, "demiray") == 0 ? 130 : 100;
+        const double edges = net->edge_blocks * (double)SN_BLOCK;
+        sum += net->cells * (57 + 9 + 6 * 9 + 6 * 9 + 57 + 45 + 18 + 30.0);
+        sum += edges * (14 + 42 + 12 + 45 + law + (net->volume ? 6 : 7) * memory);
+    } else if (!central) {
         const double law = strcmp(net->region[0].tissue.law->name, "demiray") == 0 ? 130 : 100;
         sum += net->cells * (265 + law + (net->volume ? 6 : 7) * memory);
     }
@@ -211,8 +233,9 @@ static sn_status fill_row(const sn_net *net, sn_state *state, sn_springs_bench_r
     double bytes = step_bytes(net), seconds = step_time(net, state), bandwidth, plain;
     SN_TRY(triad(bytes, &bandwidth));
     SN_TRY(plain_time(net, &plain));
+    static const char *const rungs[] = {"central", "coupled", "smoothed"};
     const double items = central ? net->springs : net->cells;
-    snprintf(row->model, sizeof row->model, "%s", central ? "central" : "coupled");
+    snprintf(row->model, sizeof row->model, "%s", rungs[net->rung]);
     snprintf(row->law, sizeof row->law, "%s", net->region[0].tissue.law->name);
     row->volume = net->volume;
     row->memory_terms = net->region[0].memory.terms;
@@ -239,13 +262,7 @@ sn_status sn_springs_bench(const sn_springs_bench_plan *plan, sn_springs_bench_r
     sn_state *state = NULL;
     sn_status status;
     *row = (sn_springs_bench_row){0};
-    if (plan->cells < 1 || plan->memory_terms < 0 || plan->memory_terms > SN_TERMS_MAX ||
-        plan->threads < 1)
-        return sn_fail(SN_E_RANGE,
-                       "bench: %d cells, %d exponentials, %d threads; expected 1 or more, 0 to %d, "
-                       "1 or more",
-                       plan->cells, plan->memory_terms, plan->threads, SN_TERMS_MAX);
-    SN_TRY_GOTO(status, bench_case(plan, &c));
+    SN_TRY_GOTO(status, sn_springs_bench_case(plan, &c));
     SN_TRY_GOTO(status, sn_net_create(c, &net));
     SN_TRY_GOTO(status, sn_state_create(net, &state));
     SN_TRY_GOTO(status, fill_row(net, state, row));

@@ -15,17 +15,18 @@ typedef struct plain_spring {
 } plain_spring;
 
 typedef struct plain_cell {
-    int node[4];
+    int node[4], edge[6];
     float g[9], V;
 } plain_cell;
 
 struct sn_plain {
-    int nodes, springs, cells, branches;
-    bool coupled, volume;
+    int nodes, springs, cells, edges, branches;
+    bool coupled, smoothed, volume;
     float B, shear, stiffening, bulk, g_inf, step;
     float decay[SN_BRANCHES_MAX], gain[SN_BRANCHES_MAX];
     plain_spring *spring;
     plain_cell *cell;
+    float *edge;      ///< smoothed: deformation gradient, then stress, and volume (edges x 10)
     float *memory;    ///< T before, then the branches, of every item and component
     float *u, *v, *f; ///< (nodes x 3)
     float *inverse_mass, *around, *growth; ///< (nodes)
@@ -112,6 +113,30 @@ static void add_law(sn_plain *p, const float F[9], float J, const float cofactor
             for (int k = 0; k < 3; k++) P[3 * i + j] += F[3 * i + k] * S[sym[k][j]];
 }
 
+// deformation of the edges, then their stress
+static void smooth(sn_plain *p) {
+    memset(p->edge, 0, (size_t)p->edges * 10 * sizeof *p->edge);
+    for (int e = 0; e < p->cells; e++) {
+        const plain_cell *c = &p->cell[e];
+        float F[9];
+        deform(p, c, F);
+        for (int k = 0; k < 6; k++) {
+            float *to = p->edge + 10 * c->edge[k];
+            for (int i = 0; i < 9; i++) to[i] += c->V / 6 * F[i];
+            to[9] += c->V / 6;
+        }
+    }
+    for (int e = 0; e < p->edges; e++) {
+        float F[9], P[9], cofactor[9], *to = p->edge + 10 * e;
+        if (!(to[9] > 0)) continue; // filling
+        for (int k = 0; k < 9; k++) F[k] = to[k] / to[9];
+        float J = volume_ratio(F, cofactor);
+        for (int k = 0; k < 9; k++) P[k] = p->volume ? 0 : p->bulk * (J - 1) * cofactor[k];
+        add_law(p, F, J, cofactor, p->memory + e * 6 * (1 + p->branches), P);
+        memcpy(to, P, sizeof P);
+    }
+}
+
 static void press(sn_plain *p) {
     for (int e = 0; e < p->cells; e++) {
         const plain_cell *c = &p->cell[e];
@@ -121,9 +146,11 @@ static void press(sn_plain *p) {
         if (p->volume)
             for (int a = 0; a < 4; a++) pressure += 0.25f * p->growth[c->node[a]];
         else
-            pressure = p->bulk * (J - 1);
+            pressure = p->smoothed ? 0 : p->bulk * (J - 1);
         for (int k = 0; k < 9; k++) P[k] = pressure * cofactor[k];
         if (p->coupled) add_law(p, F, J, cofactor, p->memory + e * 6 * (1 + p->branches), P);
+        for (int k = 0; k < 6 && p->smoothed; k++)
+            for (int i = 0; i < 9; i++) P[i] += p->edge[10 * c->edge[k] + i] / 6;
         for (int a = 0; a < 3; a++)
             for (int i = 0; i < 3; i++) {
                 float f = 0;
@@ -140,8 +167,9 @@ void sn_plain_step(sn_plain *p) {
         grow(p);
         for (int i = 0; i < p->nodes; i++) p->growth[i] *= p->bulk / p->around[i];
     }
-    if (!p->coupled) pull(p);
-    if (p->coupled || p->volume) press(p);
+    if (p->smoothed) smooth(p);
+    pull(p);
+    if (p->coupled || p->smoothed || p->volume) press(p);
     for (int k = 0; k < 3 * p->nodes; k++) {
         p->v[k] += p->step * p->f[k] * p->inverse_mass[k / 3];
         p->u[k] += p->step * p->v[k];
@@ -178,6 +206,8 @@ static void copy_cells(const sn_net *net, sn_plain *p) {
             c->node[a] = net->cell_node[(block * 4 + a) * SN_BLOCK + lane];
             p->around[c->node[a]] += 0.25f * c->V;
         }
+        for (int k = 0; k < 6 && p->smoothed; k++)
+            c->edge[k] = net->cell_edge[(block * 6 + k) * SN_BLOCK + lane];
         for (int k = 0; k < 9; k++) c->g[k] = (float)gradient[(block * 9 + k) * SN_BLOCK + lane];
     }
 }
@@ -187,6 +217,8 @@ static void set_numbers(const sn_net *net, sn_plain *p) {
     sn_factors factors;
     p->nodes = net->nodes;
     p->coupled = net->rung == SN_RUNG_COUPLED;
+    p->smoothed = net->rung == SN_RUNG_SMOOTHED;
+    p->edges = net->edge_blocks * SN_BLOCK;
     p->volume = net->volume;
     p->branches = g->branches;
     p->B = (float)g->exponent;
@@ -207,8 +239,11 @@ sn_status sn_plain_create(const sn_net *net, sn_plain **plain) {
     sn_plain *p = *plain = sn_alloc(1, sizeof *p);
     if (!p) return SN_E_MEMORY;
     const size_t nodes = (size_t)net->nodes, terms = 1 + (size_t)net->region[0].branches;
-    const size_t items = (size_t)(net->rung == SN_RUNG_COUPLED ? 6 * net->cells : net->springs);
+    const size_t items = (size_t)(net->rung == SN_RUNG_COUPLED    ? 6 * net->cells
+                                  : net->rung == SN_RUNG_SMOOTHED ? 6 * net->edge_blocks * SN_BLOCK
+                                                                  : net->springs);
     set_numbers(net, p);
+    p->edge = sn_alloc((size_t)p->edges * 10, sizeof *p->edge);
     p->spring = sn_alloc((size_t)net->springs, sizeof *p->spring);
     p->cell = sn_alloc((size_t)net->cells, sizeof *p->cell);
     p->memory = sn_alloc(items * terms, sizeof *p->memory);
@@ -218,8 +253,8 @@ sn_status sn_plain_create(const sn_net *net, sn_plain **plain) {
     p->inverse_mass = sn_alloc(nodes, sizeof *p->inverse_mass);
     p->around = sn_alloc(nodes, sizeof *p->around);
     p->growth = sn_alloc(nodes, sizeof *p->growth);
-    if (!p->spring || !p->cell || !p->memory || !p->u || !p->v || !p->f || !p->inverse_mass ||
-        !p->around || !p->growth) {
+    if (!p->edge || !p->spring || !p->cell || !p->memory || !p->u || !p->v || !p->f ||
+        !p->inverse_mass || !p->around || !p->growth) {
         sn_plain_destroy(p);
         *plain = NULL;
         return SN_E_MEMORY;
@@ -237,8 +272,8 @@ sn_status sn_plain_create(const sn_net *net, sn_plain **plain) {
 
 void sn_plain_destroy(sn_plain *p) {
     if (!p) return;
-    void *all[] = {p->spring, p->cell,         p->memory, p->u,     p->v,
-                   p->f,      p->inverse_mass, p->around, p->growth};
+    void *all[] = {p->spring, p->cell,         p->memory, p->u,      p->v,
+                   p->f,      p->inverse_mass, p->around, p->growth, p->edge};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(p);
 }

@@ -114,6 +114,7 @@ static sn_status build_loads(const sn_case *c, sn_net *net, double *area) {
         const sn_load *load = &c->load[l];
         if (load->kind == SN_LOAD_DISPLACEMENT) continue;
         sn_net_load *out = &net->load[net->load_count++];
+        out->name = l;
         out->kind = load->kind;
         out->pressure = load->pressure;
         SN_TRY(copy_history(load->factor, &out->factor));
@@ -242,6 +243,9 @@ double sn_net_next_corner(const sn_net *net, double t) {
     for (int k = 0; k < net->tool_count; k++)
         next = fmin(next, fmin(sn_history_next(net->tool[k].path, t),
                                sn_history_next(net->tool[k].turn, t)));
+    for (int k = 0; k < net->tool_count; k++)
+        for (int e = 0; e < 2; e++)
+            if (net->tool[k].grasp[e] > t) next = fmin(next, net->tool[k].grasp[e]);
     return next;
 }
 
@@ -292,25 +296,29 @@ static void push_face(double x[3][3], double pressure, double force[3]) {
     }
 }
 
+void sn_net_add_load(const sn_net *net, int load, double factor, sn_precision precision,
+                     const void *u, double *ext) {
+    const sn_net_load *l = &net->load[load];
+    if (l->kind != SN_LOAD_PRESSURE) {
+        for (int k = 0; k < l->count; k++)
+            for (int d = 0; d < 3; d++) ext[3 * l->node[k] + d] += factor * l->force[3 * k + d];
+        return;
+    }
+    for (int f = 0; f < l->count; f++) {
+        const int *node = l->node + 3 * f;
+        double x[3][3], force[3];
+        for (int k = 0; k < 3; k++) position(net, precision, u, node[k], x[k]);
+        push_face(x, factor * l->pressure, force);
+        for (int k = 0; k < 3; k++)
+            for (int d = 0; d < 3; d++) ext[3 * node[k] + d] += force[d];
+    }
+}
+
 void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext) {
     for (int l = 0; l < net->load_count; l++) {
-        const sn_net_load *load = &net->load[l];
         double factor;
-        sn_history_at(load->factor, t, &factor);
-        if (load->kind != SN_LOAD_PRESSURE) {
-            for (int k = 0; k < load->count; k++)
-                for (int d = 0; d < 3; d++)
-                    ext[3 * load->node[k] + d] += factor * load->force[3 * k + d];
-            continue;
-        }
-        for (int f = 0; f < load->count; f++) {
-            const int *node = load->node + 3 * f;
-            double x[3][3], force[3];
-            for (int k = 0; k < 3; k++) position(net, precision, u, node[k], x[k]);
-            push_face(x, factor * load->pressure, force);
-            for (int k = 0; k < 3; k++)
-                for (int d = 0; d < 3; d++) ext[3 * node[k] + d] += force[d];
-        }
+        sn_history_at(net->load[l].factor, t, &factor);
+        sn_net_add_load(net, l, factor, precision, u, ext);
     }
 }
 
@@ -320,15 +328,18 @@ double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
     for (int t = 0; t < net->tool_count; t++) {
         const sn_pose *pose = &call->pose[t];
         const double near = sn_tool_reach(&net->tool[t]) + margin;
-        double *sum = call->tool_force[t], stiffest = 0.0;
+        double *sum = call->tool_force[t], torque[3] = {0}, stiffest = 0.0;
         sum[0] = sum[1] = sum[2] = 0.0;
         for (int k = 0; k < net->contact_count; k++) {
             const int node = net->contact_node[k];
             const size_t at = (size_t)t * (size_t)net->contact_count + (size_t)k;
-            double x[3], force[3], tangent[9], r2 = 0.0;
+            double x[3], force[3], tangent[9], r[3], r2 = 0.0;
             position(net, call->precision, call->u, node, x);
-            for (int d = 0; d < 3; d++) r2 += (x[d] - pose->centre[d]) * (x[d] - pose->centre[d]);
-            if (r2 >= near * near) {
+            for (int d = 0; d < 3; d++) {
+                r[d] = x[d] - pose->centre[d];
+                r2 += r[d] * r[d];
+            }
+            if (r2 >= near * near || (call->grip && call->grip[node].tool >= 0)) {
                 call->after[at] = (sn_contact){0};
                 continue;
             }
@@ -341,9 +352,12 @@ double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
             for (int d = 0; d < 3; d++) {
                 call->ext[3 * node + d] += force[d];
                 sum[d] -= force[d]; // of the tissue on the tool
+                int e = (d + 1) % 3, g = (d + 2) % 3;
+                torque[d] -= r[e] * force[g] - r[g] * force[e];
             }
             if (call->tangent) call->tangent(call->context, node, tangent);
         }
+        if (call->tool_torque) memcpy(call->tool_torque[t], torque, sizeof torque);
         omega2 += stiffest;
     }
     return omega2;

@@ -14,16 +14,8 @@
 
 #include "springs/net.h"
 
-/// An edge of a cell: one of six.
-typedef struct edge_part {
-    int low, high; // nodes
-    int slot;      // of the cell
-    double volume; // of the cell
-    double turn;   // dihedral angle over a full turn
-} edge_part;
-
 static int compare_parts(const void *a, const void *b) {
-    const edge_part *p = a, *q = b;
+    const sn_edge_part *p = a, *q = b;
     if (p->low != q->low) return p->low < q->low ? -1 : 1;
     if (p->high != q->high) return p->high < q->high ? -1 : 1;
     return p->slot < q->slot ? -1 : p->slot > q->slot;
@@ -49,7 +41,7 @@ static double dihedral(const double *a, const double *b, const double *p, const 
     return acos(fmax(-1.0, fmin(1.0, uv / sqrt(uu * vv))));
 }
 
-static void cell_parts(const sn_mesh *mesh, const sn_net *net, int e, edge_part *part) {
+static void cell_parts(const sn_mesh *mesh, const sn_net *net, int e, sn_edge_part *part) {
     static const int corner[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
                                      {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
     const int *node = mesh->cell + 4 * e;
@@ -60,6 +52,7 @@ static void cell_parts(const sn_mesh *mesh, const sn_net *net, int e, edge_part 
         part->low = a < b ? a : b;
         part->high = a < b ? b : a;
         part->slot = net->cell_slot[e];
+        part->side = k;
         part->volume = ((const double *)net->data[SN_DOUBLE].volume)[part->slot];
         part->turn = dihedral(x[0], x[1], x[2], x[3]) / (2.0 * 3.14159265358979323846);
     }
@@ -82,7 +75,7 @@ static double class_constant(const constants *c, const double D[3]) {
 
 // gathers the parts of one edge; returns how many there are
 static int gather(const sn_net *net, const sn_net_region *region, const constants *k,
-                  const edge_part *part, int left, sn_spring *s) {
+                  const sn_edge_part *part, int left, sn_spring *s) {
     int n = 0;
     double turn = 0;
     *s = (sn_spring){.end = {part->low, part->high}};
@@ -100,11 +93,11 @@ static int gather(const sn_net *net, const sn_net_region *region, const constant
     return n;
 }
 
-// sorts the parts of a region by edge: first by low node with buckets, then inside a bucket
-static sn_status sorted_parts(const sn_mesh *mesh, const sn_net *net, int r, edge_part **parts,
-                              int *count) {
+// first by low node with buckets, then inside a bucket
+sn_status sn_net_list_parts(const sn_mesh *mesh, const sn_net *net, int r, sn_edge_part **parts,
+                            int *count) {
     int *start = sn_alloc((size_t)net->nodes + 1, sizeof *start), cells = 0;
-    edge_part *all = NULL, six[6];
+    sn_edge_part *all = NULL, six[6];
     for (int e = 0; e < mesh->cell_count; e++) cells += mesh->region[e] == r;
     all = sn_alloc((size_t)cells * 6, sizeof *all);
     if (!start || !all) {
@@ -137,11 +130,11 @@ static sn_status sorted_parts(const sn_mesh *mesh, const sn_net *net, int r, edg
 
 static sn_status region_springs(const sn_mesh *mesh, sn_net *net, int r, const constants *k) {
     sn_net_region *region = &net->region[r];
-    edge_part *part = NULL;
+    sn_edge_part *part = NULL;
     sn_spring *spring = NULL;
     int count, springs = 0;
     sn_status status;
-    SN_TRY_GOTO(status, sorted_parts(mesh, net, r, &part, &count));
+    SN_TRY_GOTO(status, sn_net_list_parts(mesh, net, r, &part, &count));
     spring = sn_alloc((size_t)count, sizeof *spring);
     if (!spring) {
         status = SN_E_MEMORY;

@@ -32,6 +32,12 @@ static double fixed_kinetic(const sn_net *net, const sn_state *s) {
             sn_real_at(s->precision, s->v, 4 * (size_t)fixed->node + (size_t)fixed->direction);
         sum += 0.5 * net->mass[fixed->node] * v * v;
     }
+    for (int k = 0; k < s->gripped_count; k++) // in directions that were not counted yet
+        for (int d = 0; d < 3; d++) {
+            const int node = s->gripped[k];
+            double v = sn_real_at(s->precision, s->v, 4 * (size_t)node + (size_t)d);
+            if (!(net->fixed_bits[node] >> d & 1)) sum += 0.5 * net->mass[node] * v * v;
+        }
     return sum;
 }
 
@@ -42,7 +48,7 @@ static double kinetic(const sn_net *net, const sn_state *s) {
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
             double v = sn_real_at(s->precision, s->v, at);
-            if (!(net->fixed_bits[i] >> d & 1))
+            if (!(net->fixed_bits[i] >> d & 1) && s->grip[i].tool < 0)
                 v += 0.5 * s->last_step * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
             sum += 0.5 * net->mass[i] * v * v;
         }
@@ -63,7 +69,7 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
                            sn_real_at(s->precision, s->now.f, at));
             all += work;
             ext += way * net->mass[i] * net->gravity[d];
-            if (net->fixed_bits[i] >> d & 1) on_fixed += work;
+            if (net->fixed_bits[i] >> d & 1 || s->grip[i].tool >= 0) on_fixed += work;
         }
     for (int k = 0; k < net->loaded_count; k++)
         for (int d = 0; d < 3; d++) {
@@ -98,6 +104,19 @@ static void stop(sn_run *run, double time) {
              time, run->net->until, run->summary->steps, time / (double)run->summary->steps);
 }
 
+static sn_status start(sn_run *run, sn_state *s, ledger *l) {
+    SN_TRY(record(run, s));
+    memcpy(l->ext, s->ext, (size_t)run->net->nodes * 3 * sizeof *l->ext);
+    run->elastic_start = elastic(run, s);
+    return SN_OK;
+}
+
+static sn_status resume(sn_run *run, sn_state *s, const sn_piece *own, int count) {
+    SN_TRY(sn_run_load(run, s, own, count));
+    const sn_moment moment = moment_of(s);
+    return sn_run_frame(run, &moment);
+}
+
 // steps from now to `next`
 static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     const double tiny = 1e-9 * run->net->until;
@@ -122,19 +141,20 @@ sn_status sn_run_explicit(sn_run *run) {
     sn_state *s = NULL;
     ledger l = {.ext = sn_alloc((size_t)net->nodes * 3, sizeof(double))};
     sn_status status = l.ext ? sn_state_create(net, &s) : SN_E_MEMORY;
-    if (status == SN_OK) status = record(run, s);
-    if (status == SN_OK) {
-        memcpy(l.ext, s->ext, (size_t)net->nodes * 3 * sizeof *l.ext);
-        run->elastic_start = elastic(run, s);
-    }
     long output = 1;
+    const sn_piece own[] = {{&output, sizeof output},
+                            {l.ext, (size_t)net->nodes * 3 * sizeof *l.ext}};
+    if (status == SN_OK) status = sn_run_goes_on(run) ? resume(run, s, own, 2) : start(run, s, &l);
     while (status == SN_OK && !s->broken && s->time < net->until) {
         double due = sn_run_output_time(net, output);
         double next = fmin(fmin(due, sn_net_next_corner(net, s->time)), net->until);
+        sn_state_follow_grasps(net, s);
+        l.fixed = fixed_kinetic(net, s);
         go_on(run, s, &l, next);
         if (s->broken || next < due) continue;
         status = record(run, s);
         output++;
+        if (status == SN_OK) status = sn_run_save(run, s, own, 2);
     }
     if (status == SN_OK) {
         if (s->broken) stop(run, s->time);

@@ -4,18 +4,23 @@
 // Stresses of central springs are virials: a spring of force f and length vector x adds f x x / l
 // to the cells around it, in parts by their volumes. The pressure is -tr(Cauchy stress)/3, the mean
 // of the cells around a node by volume. energy_density is W + U of the instantaneous law at the
-// present strain, whatever the memory has relaxed.
+// present strain, whatever the memory has relaxed. On the smoothed rung strain, stress and energy
+// of a cell are the means of its six edges, which adds up: every edge has a sixth of each of its
+// cells.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "springs/net.h"
 
+enum { EDGE_NUMBERS = 13 };
+
 struct sn_fields {
     double *displacement, *velocity, *pressure; ///< nodes of the mesh
     double *strain, *stress, *energy;           ///< cells of the mesh
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
+    double *edge; ///< strain, stress, energy of smoothed edges: 13 each
 };
 
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
@@ -31,7 +36,8 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
     f->stress = sn_alloc(cells * 6, sizeof(double));
     f->energy = sn_alloc(cells, sizeof(double));
     f->growth = sn_alloc((size_t)net->point_blocks * SN_BLOCK, sizeof(double));
-    if (!f->displacement || !f->velocity || !f->pressure || !f->around || !f->strain ||
+    f->edge = sn_alloc((size_t)net->edge_blocks * SN_BLOCK * EDGE_NUMBERS, sizeof(double));
+    if (!f->edge || !f->displacement || !f->velocity || !f->pressure || !f->around || !f->strain ||
         !f->stress || !f->energy || !f->growth) {
         sn_fields_destroy(f);
         return SN_E_MEMORY;
@@ -42,8 +48,8 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
 
 void sn_fields_destroy(sn_fields *f) {
     if (!f) return;
-    void *all[] = {f->displacement, f->velocity, f->pressure, f->around,
-                   f->strain,       f->stress,   f->energy,   f->growth};
+    void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain,
+                   f->stress,       f->energy,   f->growth,   f->edge};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(f);
 }
@@ -54,6 +60,12 @@ void sn_fields_destroy(sn_fields *f) {
 typedef struct cell_shape {
     double F[9], J, V;
 } cell_shape;
+
+static void find_ratio(cell_shape *c) {
+    const double *F = c->F;
+    c->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
+           F[2] * (F[3] * F[7] - F[4] * F[6]);
+}
 
 static void find_shape(const sn_net *net, const sn_moment *m, int slot, cell_shape *c) {
     const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
@@ -69,9 +81,23 @@ static void find_shape(const sn_net *net, const sn_moment *m, int slot, cell_sha
                        gradient[(block * 9 + 3 * (a - 1) + j) * SN_BLOCK + lane];
             c->F[3 * i + j] = sum;
         }
-    const double *F = c->F;
-    c->J = F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-           F[2] * (F[3] * F[7] - F[4] * F[6]);
+    find_ratio(c);
+}
+
+// of a smoothed edge
+static void find_edge_shape(const sn_net *net, const sn_moment *m, int edge, cell_shape *c) {
+    const double *Q = net->axes;
+    double sum[9] = {0};
+    c->V = 0;
+    for (int s = net->edge_start[edge]; s < net->edge_start[edge + 1]; s++) {
+        cell_shape one;
+        find_shape(net, m, net->edge_cell[s], &one);
+        c->V += one.V / 6.0;
+        for (int k = 0; k < 9; k++) // H: a mean of F would lose the digits of small strains
+            sum[k] += one.V / 6.0 * (one.F[k] - Q[3 * (k % 3) + k / 3]);
+    }
+    for (int k = 0; k < 9; k++) c->F[k] = Q[3 * (k % 3) + k / 3] + (c->V > 0 ? sum[k] / c->V : 0.0);
+    find_ratio(c);
 }
 
 static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
@@ -116,10 +142,11 @@ static double remembered(const sn_net_region *region, const sn_moment *m, size_t
 
 //---- stress of the rungs -------------------------------------------------------------------------
 
-static void coupled_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
-                         int slot, const cell_shape *c, double *stress, double *energy) {
+// of a cell, or of a smoothed edge
+static void solid_place(const sn_net *net, const sn_net_region *region, const sn_moment *m,
+                        int slot, const cell_shape *c, double *stress, double *energy) {
     const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6, n = components * SN_BLOCK;
-    const size_t block = (size_t)(slot / SN_BLOCK - region->cell_block);
+    const size_t block = (size_t)(slot / SN_BLOCK - sn_region_law_block(net, region));
     const size_t lane = (size_t)slot % SN_BLOCK;
     const sn_tissue *t = &region->tissue;
     double E[6], S[6], p = region->bulk * (c->J - 1.0);
@@ -134,6 +161,38 @@ static void coupled_cell(const sn_net *net, const sn_net_region *region, const s
     }
     add_cauchy(c, S, stress);
     for (int k = 0; k < 3 && net->volume_mode == SN_VOLUME_CELL; k++) stress[k] += p;
+}
+
+static void find_edges(const sn_net *net, sn_fields *f, const sn_moment *m) {
+    for (int r = 0; r < net->region_count; r++) {
+        const sn_net_region *region = &net->region[r];
+        for (int e = region->edge_block * SN_BLOCK;
+             e < (region->edge_block + region->edge_blocks) * SN_BLOCK; e++) {
+            double E[6], *to = f->edge + EDGE_NUMBERS * (size_t)e;
+            cell_shape c;
+            if (net->edge_filling[e]) continue;
+            find_edge_shape(net, m, e, &c);
+            green_strain(c.F, E);
+            turn_back(net, E, to);
+            memset(to + 6, 0, 7 * sizeof *to);
+            solid_place(net, region, m, e, &c, to + 6, to + 12);
+        }
+    }
+}
+
+// mean of the six edges; replaces the strain of the cell
+static void smoothed_cell(const sn_net *net, const sn_fields *f, int slot, double *strain,
+                          double *stress, double *energy) {
+    memset(strain, 0, 6 * sizeof *strain);
+    for (int k = 0; k < 6; k++) {
+        const int e = net->cell_edge[(slot / SN_BLOCK * 6 + k) * SN_BLOCK + slot % SN_BLOCK];
+        const double *from = f->edge + EDGE_NUMBERS * (size_t)e;
+        for (int i = 0; i < 6; i++) {
+            strain[i] += from[i] / 6.0;
+            stress[i] += from[6 + i] / 6.0;
+        }
+        *energy += from[12] / 6.0;
+    }
 }
 
 static void central_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
@@ -218,6 +277,7 @@ static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
 void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
     fill_nodes(net, f, m);
     find_growth(net, f, m);
+    if (net->rung == SN_RUNG_SMOOTHED) find_edges(net, f, m);
     memset(f->pressure, 0, (size_t)net->nodes * sizeof *f->pressure);
     memset(f->around, 0, (size_t)net->nodes * sizeof *f->around);
     for (int e = 0; e < net->cells; e++) {
@@ -231,7 +291,9 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
         memset(stress, 0, 6 * sizeof *stress);
         f->energy[e] = 0;
         if (net->rung == SN_RUNG_COUPLED)
-            coupled_cell(net, region, m, slot, &c, stress, &f->energy[e]);
+            solid_place(net, region, m, slot, &c, stress, &f->energy[e]);
+        else if (net->rung == SN_RUNG_SMOOTHED)
+            smoothed_cell(net, f, slot, f->strain + 6 * e, stress, &f->energy[e]);
         else
             central_cell(net, region, m, slot, &c, stress, &f->energy[e]);
         if (net->volume) nodal_volume(net, region, f, m, slot, stress, &f->energy[e]);

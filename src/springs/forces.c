@@ -1,5 +1,7 @@
-// Calls the kernels in order: volumes, volume points, springs and cells, nodes.
+// Calls the kernels in order: volumes, volume points, springs and cells (with smoothed edges
+// between two passes of cells), nodes.
 // SPDX-License-Identifier: Apache-2.0
+#include <math.h>
 #include <string.h>
 
 #include "springs/net.h"
@@ -42,7 +44,13 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->volume_mode = net->volume_mode;
     pass->bulk = region->bulk;
     pass->pressure = call->out->pressure;
-    pass->first = region->cell_block;
+    pass->upright = call->upright && net->volume ? fmax(20 * region->shear, region->bulk) : 0.0;
+    pass->first = sn_region_law_block(net, region);
+    pass->shape = call->out->shape;
+    pass->piola = call->out->piola;
+    pass->share_start = net->edge_start;
+    pass->share = net->edge_cell;
+    pass->edge = net->cell_edge;
     set_memory(region, call, region->cell_store, factors, &pass->memory);
 }
 
@@ -122,6 +130,27 @@ static void cell_task(void *context, int k) {
     w->kernels->cells(&w->call->out->cells[t->place[k].region], &tile);
 }
 
+static void shape_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->cell_tiles;
+    const sn_tile tile = tile_of(w, t, k, 0);
+    w->kernels->shapes(&w->call->out->cells[t->place[k].region], &tile);
+}
+
+static void edge_task(void *context, int block) {
+    const force_work *w = context;
+    int r = 0;
+    while (block >= w->net->region[r].edge_block + w->net->region[r].edge_blocks) r++;
+    w->kernels->edges(&w->call->out->cells[r], block);
+}
+
+static void share_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->cell_tiles;
+    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    w->kernels->shares(&w->call->out->cells[t->place[k].region], &tile);
+}
+
 static void press_task(void *context, int k) {
     const force_work *w = context;
     const sn_tiles *t = &w->net->fan_tiles;
@@ -164,10 +193,15 @@ void sn_net_forces(const sn_net *net, const sn_force_call *call) {
         sn_team_run(call->team, net->fan_tiles.count, volume_task, &w);
         sn_team_run(call->team, net->point_blocks, point_task, &w);
     }
-    if (net->rung == SN_RUNG_COUPLED)
+    if (net->rung == SN_RUNG_COUPLED) {
         sn_team_run(call->team, net->cell_tiles.count, cell_task, &w);
-    else
+    } else if (net->rung == SN_RUNG_SMOOTHED) {
+        sn_team_run(call->team, net->cell_tiles.count, shape_task, &w);
+        sn_team_run(call->team, net->edge_blocks, edge_task, &w);
+        sn_team_run(call->team, net->cell_tiles.count, share_task, &w);
+    } else {
         sn_team_run(call->team, net->spring_tiles.count + net->fan_tiles.count, central_task, &w);
+    }
     sn_team_run(call->team, sn_net_chunks(net), node_task, &w);
 }
 
@@ -176,18 +210,22 @@ sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratc
     scratch->f = sn_alloc((size_t)net->nodes * 4, size);
     scratch->part = sn_alloc((size_t)net->part_count * 4, size);
     scratch->growth = sn_alloc((size_t)sn_tiles_entries(&net->fan_tiles), size);
+    const size_t cells = net->rung == SN_RUNG_SMOOTHED ? (size_t)net->cell_blocks * SN_BLOCK : 0;
+    scratch->shape = sn_alloc(cells * 12, size);
+    scratch->piola = sn_alloc((size_t)net->edge_blocks * SN_BLOCK * 12, size);
     scratch->pressure = sn_alloc((size_t)net->point_blocks * SN_BLOCK, size);
     scratch->cells = sn_alloc(regions, sizeof *scratch->cells);
     scratch->springs = sn_alloc(regions, sizeof *scratch->springs);
     scratch->points = sn_alloc(regions, sizeof *scratch->points);
-    bool all = scratch->f && scratch->part && scratch->growth && scratch->pressure &&
-               scratch->cells && scratch->springs && scratch->points;
+    bool all = scratch->f && scratch->part && scratch->growth && scratch->shape && scratch->piola &&
+               scratch->pressure && scratch->cells && scratch->springs && scratch->points;
     return all ? SN_OK : SN_E_MEMORY;
 }
 
 void sn_scratch_destroy(sn_scratch *scratch) {
-    void *all[] = {scratch->f,     scratch->part,    scratch->growth, scratch->pressure,
-                   scratch->cells, scratch->springs, scratch->points};
+    void *all[] = {scratch->f,        scratch->part,    scratch->growth,
+                   scratch->pressure, scratch->shape,   scratch->piola,
+                   scratch->cells,    scratch->springs, scratch->points};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     *scratch = (sn_scratch){0};
 }
@@ -230,9 +268,9 @@ void sn_net_history(const sn_net *net, const sn_factors *factors, const double *
     const int components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *g = &net->region[r];
-        if (net->rung == SN_RUNG_COUPLED)
-            item_history(g, &factors[r], g->cell_store, g->cell_blocks, components * SN_BLOCK,
-                         store, history);
+        if (net->rung != SN_RUNG_CENTRAL)
+            item_history(g, &factors[r], g->cell_store, sn_region_law_blocks(net, g),
+                         components * SN_BLOCK, store, history);
         else
             item_history(g, &factors[r], g->spring_store, g->spring_blocks, SN_BLOCK, store,
                          history);

@@ -22,6 +22,7 @@ static void evaluate(const sn_net *net, const sn_frequency_call *call, const voi
     sn_force_call force = {.precision = call->precision,
                            .mode = SN_MEMORY_OFF,
                            .u = u,
+                           .upright = call->upright,
                            .out = call->scratch,
                            .team = call->team};
     sn_net_forces(net, &force);
@@ -175,8 +176,13 @@ sn_status sn_net_find_step(sn_net *net) {
     sn_status status = sn_scratch_create(net, SN_DOUBLE, &scratch);
     if (!u || !trial || !net->mode || !basis) status = SN_E_MEMORY;
     if (status == SN_OK) {
-        const sn_frequency_call call = {SN_DOUBLE,      u,        trial, net->mode, basis,
-                                        SN_LANCZOS_MAX, &scratch, NULL};
+        const sn_frequency_call call = {.precision = SN_DOUBLE,
+                                        .u = u,
+                                        .trial = trial,
+                                        .mode = net->mode,
+                                        .basis = basis,
+                                        .steps = SN_LANCZOS_MAX,
+                                        .scratch = &scratch};
         net->omega2 = search(net, &call);
         double longest = SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2);
         net->step = fmin(longest, net->output_every); // nothing free to move has no limit

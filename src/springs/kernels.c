@@ -8,6 +8,9 @@
     void sn_points_##isa##_##bits(const sn_point_pass *pass, int block);                           \
     void sn_cells_##isa##_##bits(const sn_cell_pass *pass, const sn_tile *tile);                   \
     void sn_press_##isa##_##bits(const sn_cell_pass *pass, const sn_tile *tile);                   \
+    void sn_shapes_##isa##_##bits(const sn_cell_pass *pass, const sn_tile *tile);                  \
+    void sn_edges_##isa##_##bits(const sn_cell_pass *pass, int block);                             \
+    void sn_shares_##isa##_##bits(const sn_cell_pass *pass, const sn_tile *tile);                  \
     void sn_springs_##isa##_##bits(const sn_spring_pass *pass, const sn_tile *tile);               \
     void sn_nodes_##isa##_##bits(const sn_node_pass *pass, int chunk);                             \
     void sn_move_##isa##_##bits(const sn_move_pass *pass, int chunk);                              \
@@ -18,7 +21,8 @@ SN_ISA_LIST(DECLARE)
 #define ROW(isa, bits)                                                                             \
     {                                                                                              \
         sn_volumes_##isa##_##bits, sn_points_##isa##_##bits, sn_cells_##isa##_##bits,              \
-            sn_press_##isa##_##bits, sn_springs_##isa##_##bits, sn_nodes_##isa##_##bits,           \
+            sn_press_##isa##_##bits, sn_shapes_##isa##_##bits, sn_edges_##isa##_##bits,            \
+            sn_shares_##isa##_##bits, sn_springs_##isa##_##bits, sn_nodes_##isa##_##bits,          \
             sn_move_##isa##_##bits, sn_peak_##isa##_##bits                                         \
     }
 static const sn_spring_kernels rows[SN_ISA_COUNT][2] = {

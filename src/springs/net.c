@@ -9,9 +9,6 @@
 
 static sn_status check_settings(const sn_case *c) {
     const sn_springs_def *def = &c->springs;
-    if (def->rung == SN_RUNG_SMOOTHED)
-        return sn_fail(SN_E_UNSUPPORTED, "springs: model smoothed is not supported; use coupled or "
-                                         "central");
     if (def->integrator == SN_INTEGRATOR_IMPLICIT)
         return sn_fail(SN_E_UNSUPPORTED, "springs: integrator implicit is not supported; use "
                                          "explicit or quasi-static");
@@ -26,7 +23,33 @@ static sn_status check_settings(const sn_case *c) {
     return SN_OK;
 }
 
+// what readers refuse too; a mesh that a program made may not have come through them
+static sn_status check_mesh(const sn_mesh *mesh) {
+    unsigned char *used = sn_alloc((size_t)mesh->node_count, 1);
+    if (!used) return SN_E_MEMORY;
+    sn_status status = SN_OK;
+    for (int e = 0; e < mesh->cell_count && status == SN_OK; e++) {
+        for (int a = 0; a < 4; a++) used[mesh->cell[4 * e + a]] = 1;
+        double volume = sn_mesh_cell_volume(mesh, e);
+        if (!(volume > 0))
+            status = sn_fail(SN_E_MESH,
+                             "springs: cell %d has the volume %g m3: it is flat or turned inside "
+                             "out; sn_mesh_finish() turns such cells round",
+                             e, volume);
+    }
+    for (int i = 0; i < mesh->node_count && status == SN_OK; i++)
+        if (!used[i])
+            status = sn_fail(SN_E_MESH, "springs: node %d belongs to no cell: leave it away", i);
+    sn_free(used);
+    return status;
+}
+
 static sn_status check_motion(const sn_case *c) {
+    for (int t = 0; t < c->tool_count; t++)
+        if (c->tool[t].grasp[1] > c->tool[t].grasp[0] &&
+            c->springs.integrator != SN_INTEGRATOR_EXPLICIT)
+            return sn_fail(SN_E_UNSUPPORTED, "tool \"%s\": grasp needs integrator explicit",
+                           c->tool[t].name);
     if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC) return SN_OK;
     char text[SN_TEXT_MAX];
     sn_case_free_motions(c, text);
@@ -50,7 +73,7 @@ static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *reg
     if (t->law->fibres)
         return sn_fail(SN_E_UNSUPPORTED,
                        "tissue %s: law %s has fibres, which central springs cannot carry; use "
-                       "model coupled",
+                       "model coupled or smoothed",
                        t->name, t->law->name);
     SN_TRY(sn_spring_fit(t, &region->exponent, &region->stiffening));
     // springs bring lambda = mu, a bulk modulus of 5/3 mu
@@ -73,17 +96,16 @@ static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *reg
 static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region) {
     const sn_tissue *t = &region->tissue;
     sn_moduli moduli;
-    if (t->law->kind == SN_LAW_UNIAXIAL && net->rung == SN_RUNG_COUPLED)
-        return sn_fail(
-            SN_E_UNSUPPORTED,
-            "tissue %s: law %s is uniaxial; coupled cells need a solid law, or use model "
-            "central with poissons_ratio",
-            t->name, t->law->name);
+    if (t->law->kind == SN_LAW_UNIAXIAL && net->rung != SN_RUNG_CENTRAL)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "tissue %s: law %s is uniaxial; cells need a solid law, or use model "
+                       "central with poissons_ratio",
+                       t->name, t->law->name);
     sn_tissue_moduli(t, &moduli);
     region->shear = moduli.shear;
     region->bulk = moduli.bulk;
     region->stiffening = 1.0;
-    if (net->rung == SN_RUNG_COUPLED || net->volume) {
+    if (net->rung != SN_RUNG_CENTRAL || net->volume) {
         if (isinf(region->bulk))
             return sn_fail(SN_E_UNSUPPORTED,
                            "tissue %s: incompressible; springs need a finite bulk_modulus, for "
@@ -162,7 +184,7 @@ static void place_stores(sn_net *net) {
         const size_t numbers = g->branches > 0 ? (size_t)(1 + g->branches) * SN_BLOCK
                                                : 0; // of one component, one block
         g->cell_store = at;
-        if (net->rung == SN_RUNG_COUPLED) at += numbers * components * (size_t)g->cell_blocks;
+        at += numbers * components * (size_t)sn_region_law_blocks(net, g);
         g->spring_store = at;
         at += numbers * (size_t)g->spring_blocks;
         g->point_store = at;
@@ -191,7 +213,7 @@ static sn_status copy_single(sn_net *net) {
     sn_net_data *s = &net->data[SN_SINGLE];
     const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
     const size_t springs = (size_t)net->spring_blocks * SN_BLOCK, nodes = (size_t)net->nodes * 4;
-    if (net->rung == SN_RUNG_COUPLED) {
+    if (net->rung != SN_RUNG_CENTRAL) {
         SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
         SN_TRY(to_single(d->volume, cells, &s->volume));
     }
@@ -272,7 +294,7 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->rung = def->rung;
     net->volume = def->volume;
     net->volume_mode = def->volume                    ? SN_VOLUME_NODE
-                       : def->rung == SN_RUNG_COUPLED ? SN_VOLUME_CELL
+                       : def->rung != SN_RUNG_CENTRAL ? SN_VOLUME_CELL
                                                       : SN_VOLUME_NONE;
     net->integrator = def->integrator;
     net->precision = def->integrator == SN_INTEGRATOR_EXPLICIT ? def->precision : SN_DOUBLE;
@@ -308,6 +330,7 @@ static sn_status build(const sn_case *c, sn_net *net) {
     SN_TRY(copy_case(c, net));
     SN_TRY(sn_net_build_cells(c, net));
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(sn_net_build_springs(c, net));
+    if (net->rung == SN_RUNG_SMOOTHED) SN_TRY(sn_net_build_edges(c, net));
     SN_TRY(sn_net_build_tiles(c, net));
     SN_TRY(list_shares(net));
     SN_TRY(set_masses(c, net));
@@ -336,6 +359,7 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
     SN_TRY(check_settings(c));
     SN_TRY(sn_case_check(c));
     SN_TRY(check_motion(c));
+    SN_TRY(check_mesh(c->mesh));
     sn_net *n = sn_alloc(1, sizeof *n);
     if (!n) return SN_E_MEMORY;
     sn_case ordered = *c;
@@ -345,6 +369,10 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
         n->node_name ? sn_net_order_nodes(c->mesh, &ordered.mesh, n->node_name) : SN_E_MEMORY;
     if (status == SN_OK) status = build(&ordered, n);
     sn_mesh_destroy(ordered.mesh);
+    n->node_place = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_place);
+    if (!n->node_place) status = SN_E_MEMORY;
+    for (int i = 0; i < n->nodes && status == SN_OK; i++) n->node_place[n->node_name[i]] = i;
+    if (status == SN_OK) n->fingerprint = sn_net_fingerprint(n);
     if (status != SN_OK) {
         sn_net_destroy(n);
         return status;
@@ -382,11 +410,12 @@ void sn_net_destroy(sn_net *n) {
     sn_tiles_destroy(&n->cell_tiles);
     sn_tiles_destroy(&n->spring_tiles);
     sn_tiles_destroy(&n->fan_tiles);
+    sn_net_destroy_edges(n);
     void *all[] = {n->node_name,     n->region,      n->cell_node,          n->cell_point,
                    n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
                    n->spring_volume, n->point_start, n->point_item,         n->point_node,
                    n->point_volume,  n->node_start,  n->node_item,          n->node_position,
-                   n->mass,          n->mode,        n->root_inverse_mass};
+                   n->mass,          n->mode,        n->root_inverse_mass,  n->node_place};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(n);
 }

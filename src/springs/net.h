@@ -26,7 +26,10 @@ typedef struct sn_net_region {
     int cell_block, cell_blocks;
     int spring_block, spring_blocks;
     int point_block, point_blocks;
-    size_t cell_store, spring_store, point_store; ///< first number in the state's store
+    int edge_block, edge_blocks;                  ///< smoothed
+    size_t cell_store, spring_store, point_store; ///< first number in the state's store; of
+                                                  ///< `cell_store` where the law is: at cells, or
+                                                  ///< at smoothed edges
 } sn_net_region;
 
 typedef struct sn_tile_place {
@@ -61,6 +64,15 @@ typedef struct sn_spring {
     double volume; ///< of the cells around it
 } sn_spring;
 
+/// An edge of a cell: one of six.
+typedef struct sn_edge_part {
+    int low, high; ///< nodes
+    int slot;      ///< of the cell
+    int side;      ///< which of the six
+    double volume; ///< of the cell
+    double turn;   ///< dihedral angle over a full turn
+} sn_edge_part;
+
 /// Cells around one edge.
 typedef struct sn_fan {
     int ring;    ///< nodes around the edge
@@ -86,6 +98,7 @@ typedef struct sn_net_fixed {
 /// Traction or force lumped at nodes, or faces under pressure.
 typedef struct sn_net_load {
     sn_load_kind kind;
+    int name;           ///< number in the case
     sn_history *factor; ///< Nullable, owned
     double pressure;
     int count;     ///< nodes of a traction or force, faces of a pressure
@@ -120,14 +133,18 @@ struct sn_net {
 
     int region_count;
     sn_net_region *region;
-    int cell_blocks, spring_blocks, point_blocks;
+    int cell_blocks, spring_blocks, point_blocks, edge_blocks;
     int *cell_node;          ///<                                     (cell_blocks x 4 x SN_BLOCK)
     int *cell_point;         ///<                                     (cell_blocks x 4 x SN_BLOCK)
     int *cell_slot;          ///< place of each cell of the mesh      (cells)
     int *spring_end;         ///<                                     (spring_blocks x 2 x SN_BLOCK)
     int *spring_share_start; ///< springs of each slot of a cell (cell_blocks x SN_BLOCK + 1)
     int *spring_share;       ///< slot of the spring
-    double *spring_volume;   ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
+    int *edge_start, *edge_cell; ///< smoothed: slots of the cells around each edge
+    int *cell_edge;     ///< smoothed: slots of the edges of each cell (cell_blocks x 6 x SN_BLOCK)
+    int edge_most;      ///< most cells around an edge
+    bool *edge_filling; ///< (edge_blocks x SN_BLOCK)
+    double *spring_volume; ///< volume of the cells around each spring (spring_blocks x SN_BLOCK)
     sn_tiles spring_tiles, cell_tiles, fan_tiles; ///< central, coupled, with volume
     int part_count;                               ///< entries of springs, then of cells or fans
     int other_part;                               ///< first entry of cells or fans
@@ -136,6 +153,7 @@ struct sn_net {
     double *point_volume; ///<                                (point_blocks x SN_BLOCK)
     int *node_start, *node_item; ///< entries of tiles at each node
     int *node_name;              ///< number in the mesh of each node (nodes)
+    int *node_place;             ///< the other way round             (nodes)
     double *node_position;       ///<                         (nodes x 3)
     double *mass;                ///<                               (nodes)
     double *root_inverse_mass;   ///< of free directions, else 0   (nodes x 3)
@@ -161,6 +179,7 @@ struct sn_net {
     int *loaded; ///< nodes that loads and tools can push
     int probe_count;
     sn_net_probe *probe;
+    uint64_t fingerprint; ///< of all that results depend on
 };
 
 /// Factors of the recursion of one region for one step.
@@ -174,11 +193,20 @@ typedef struct sn_scratch {
     void *f;             ///< quads                                (nodes)
     void *part;          ///< quads: forces of the entries of tiles (part_count)
     void *growth;        ///< of the entries of fan tiles
+    void *shape, *piola; ///< smoothed: (cell_blocks, edge_blocks x SN_BLOCK x 12)
     void *pressure;      ///<                                      (point_blocks x SN_BLOCK)
     sn_cell_pass *cells; ///< what kernels are told, by region (region_count)
     sn_spring_pass *springs;
     sn_point_pass *points;
 } sn_scratch;
+
+/// A node that moves with a tool.
+typedef struct sn_grip {
+    int tool;                        ///< -1: free
+    double at[3];                    ///< in the tool's axes, m
+    double u_before[3], v_before[3]; ///< at the start of the step
+    double way_a[3];                 ///< acceleration of the last step
+} sn_grip;
 
 struct sn_state {
     double time;
@@ -198,6 +226,15 @@ struct sn_state {
     sn_pose *tool_pose;                ///< where sn_state_set_tool() put it
     bool *tool_set;
     double (*tool_force)[3];
+    double (*tool_torque)[3];  ///< about the tool's centre
+    unsigned char *tool_phase; ///< of a grasp by the case: 0 before, 1 in it, 2 after
+    double *load_factor;       ///< of sn_state_set_load()         (factor_count)
+    double *load_was;          ///< in use at the end of the last step; NAN: that of the case
+    bool *load_set;
+    double *push;                ///< of sn_state_push(), N          (nodes x 3)
+    int *pushed, pushed_count;   ///< nodes that have one
+    sn_grip *grip;               ///<                                (nodes)
+    int *gripped, gripped_count; ///< nodes that tools hold
     // the search for the highest frequency
     void *probe_trial; ///< quads
     double *mode, *basis;
@@ -208,7 +245,8 @@ struct sn_state {
     int check_in, check_every; ///< steps until omega2 is looked at again
     double moved, check_way;   ///< most that a node can have moved since, may move, m
     int warnings;
-    bool broken; ///< a step gave numbers that are not finite; the state was put back to rest
+    bool broken;  ///< a step gave numbers that are not finite; the state was put back to rest
+    bool crushed; ///< volume points were, and some cells may still be
     double damped_energy; ///< taken by damping so far, J
 };
 
@@ -218,6 +256,13 @@ struct sn_state {
 sn_status sn_net_build_cells(const sn_case *c, sn_net *net);
 /// Edges into springs: `stiffness` class constants or the volume rule.
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net);
+/// Edges with the cells around them, of the smoothed rung.
+sn_status sn_net_build_edges(const sn_case *c, sn_net *net);
+void sn_net_destroy_edges(sn_net *net);
+/// The edges of the cells of a region, sorted by nodes, then by slot of the cell. *parts is
+/// sn_alloc'd for the caller.
+sn_status sn_net_list_parts(const sn_mesh *mesh, const sn_net *net, int region,
+                            sn_edge_part **parts, int *count);
 /// Places the springs of a region, sorted by end 0, in stars.
 sn_status sn_net_place_springs(sn_net *net, sn_net_region *region, const sn_spring *spring,
                                int count);
@@ -249,6 +294,17 @@ bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
 
+/// Blocks of the places of a region where a solid law is evaluated: cells, or smoothed edges. None
+/// on the central rung.
+static inline int sn_region_law_blocks(const sn_net *net, const sn_net_region *region) {
+    return net->rung == SN_RUNG_COUPLED    ? region->cell_blocks
+           : net->rung == SN_RUNG_SMOOTHED ? region->edge_blocks
+                                           : 0;
+}
+static inline int sn_region_law_block(const sn_net *net, const sn_net_region *region) {
+    return net->rung == SN_RUNG_SMOOTHED ? region->edge_block : region->cell_block;
+}
+
 /// Calls of the kernels that go over nodes.
 static inline int sn_net_chunks(const sn_net *net) {
     return (net->nodes + SN_NODE_CHUNK - 1) / SN_NODE_CHUNK;
@@ -263,6 +319,7 @@ typedef struct sn_force_call {
     const sn_factors *factors; ///< Nullable with SN_MEMORY_OFF
     void *store;               ///< ADVANCE
     const void *history;       ///< TRIAL
+    bool upright;              ///< some cells are crushed (SN_UPRIGHT)
     sn_scratch *out;
     sn_team *team; ///< Nullable: alone
 } sn_force_call;
@@ -284,6 +341,9 @@ double sn_net_next_corner(const sn_net *net, double t);
 bool sn_net_changes(const sn_net *net, double from, double to);
 /// Adds loads to ext (nodes x 3; quads u in the given precision).
 void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext);
+/// The same of one load, with a factor of the caller's.
+void sn_net_add_load(const sn_net *net, int load, double factor, sn_precision precision,
+                     const void *u, double *ext);
 /// Clears ext at the loaded nodes.
 void sn_net_clear_ext(const sn_net *net, double *ext);
 /// Contact with tools: forces into ext, sum by tool into tool_force; `after` may be `before`.
@@ -297,6 +357,8 @@ typedef struct sn_contact_call {
     sn_contact *after;
     double *ext;
     double (*tool_force)[3];
+    double (*tool_torque)[3]; ///< Nullable: about the centre of the pose
+    const sn_grip *grip;      ///< Nullable: nodes that tools hold do not touch them (nodes)
     sn_tangent_sink *tangent;
     void *context;
 } sn_contact_call;
@@ -306,6 +368,30 @@ typedef struct sn_contact_call {
 double sn_net_contact(const sn_net *net, const sn_contact_call *call);
 /// Where a tool is at time t.
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose);
+
+/// Looks whether cells are crushed, from s->now.growth, and from all cells while some were; counts
+/// a warning when it begins.
+void sn_state_look_at_cells(const sn_net *net, sn_state *s);
+
+//---- what is imposed while a state runs ----------------------------------------------------------
+
+/// Factor of a load of the case: the caller's, or that of its time table.
+double sn_state_load_factor(const sn_net *net, const sn_state *s, int load, double t);
+/// Displacement of prescribed direction k at time t, at the end of the last step where `was`.
+double sn_state_prescribed(const sn_net *net, const sn_state *s, const sn_net_fixed *fixed,
+                           double t, bool was);
+/// No loads, pushes or grips but those of the case; tools where the case has them.
+void sn_state_clear_imposed(const sn_net *net, sn_state *s);
+/// Adds pushes to the forces in s->now.f.
+void sn_state_add_pushes(const sn_net *net, sn_state *s);
+/// Keeps the place and velocity of held nodes, at the start of a step.
+void sn_state_remember_grips(sn_state *s);
+/// Takes held nodes to where their tools are at the state's time + h.
+void sn_state_move_grips(const sn_net *net, sn_state *s, double h);
+/// Adds what held nodes give their tools, from the forces in s->now.f.
+void sn_state_pull_tools(const sn_net *net, sn_state *s);
+/// Grasps and releases what the case says for the state's time.
+void sn_state_follow_grasps(const sn_net *net, sn_state *s);
 
 //---- explicit integration -----------------------------------------------------------------------
 
@@ -321,6 +407,7 @@ typedef struct sn_frequency_call {
     int steps;              ///< at most SN_LANCZOS_MAX
     sn_scratch *scratch;    ///< in that precision
     sn_team *team;          ///< Nullable: alone
+    bool upright;           ///< as in sn_force_call
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 #define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
@@ -336,6 +423,13 @@ double sn_net_stable_step(const sn_net *net, double omega2);
 
 static inline double sn_real_at(sn_precision precision, const void *array, size_t i) {
     return precision == SN_SINGLE ? (double)((const float *)array)[i] : ((const double *)array)[i];
+}
+
+static inline void sn_real_put(sn_precision precision, void *array, size_t i, double x) {
+    if (precision == SN_SINGLE)
+        ((float *)array)[i] = (float)x;
+    else
+        ((double *)array)[i] = x;
 }
 
 /// A moment of a run, in double: what fields, history and energies are computed from.
@@ -390,10 +484,19 @@ int sn_tangent_solve(const sn_net *net, sn_tangent *tangent, const double *b, do
 
 //---- runs ----------------------------------------------------------------------------------------
 
+/// Memory that a snapshot holds.
+typedef struct sn_piece {
+    void *data;
+    size_t bytes;
+} sn_piece;
+#define SN_PIECES_MAX 64
+uint64_t sn_net_fingerprint(const sn_net *net);
+
 #define SN_WALLS 65536 ///< wall times kept of a run
 typedef struct sn_run {
     const sn_net *net;
-    const sn_output *output; ///< Nullable
+    const sn_output *output;   ///< Nullable
+    const sn_restart *restart; ///< Nullable
     sn_run_summary *summary;
     sn_record *history;
     sn_fields *fields;
@@ -410,6 +513,16 @@ void sn_run_wall(sn_run *run, double seconds);
 void sn_run_progress(sn_run *run, double time);
 /// Row and frame of a moment.
 sn_status sn_run_record(sn_run *run, const sn_moment *moment);
+/// Hands a frame out, without a row: the first thing that a run does that goes on from bytes.
+sn_status sn_run_frame(sn_run *run, const sn_moment *moment);
+static inline bool sn_run_goes_on(const sn_run *run) {
+    return run->restart && run->restart->state;
+}
+/// After every output: saves the run, its state and `own`, what the integrator keeps beside them.
+sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int count);
+/// Takes all that from run->restart->state. @return SN_OK, SN_E_DATA, SN_E_DEFINITION (another
+/// case), SN_E_UNSUPPORTED (another version), SN_E_MEMORY.
+sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count);
 /// Time of output k, or the end of the run; INFINITY after the end.
 double sn_run_output_time(const sn_net *net, long k);
 sn_status sn_run_explicit(sn_run *run);

@@ -19,6 +19,10 @@
 // the next. A fan of six cells reads and writes 8 nodes, where six cells alone do 24. Fans stand in
 // blocks of SN_FAN_BLOCK, all of one size and kind in a tile.
 //
+// Smoothed edges: strain and stress live at edges, each with a sixth of every cell around it. What
+// cells tell edges and edges tell cells stands item by item, in quads, since both read it in an
+// order of their own.
+//
 // `void *` stands for arrays of float or double: the precision of the kernel that is called.
 #pragma once
 
@@ -36,6 +40,11 @@
 #define SN_TILE_NODES 512                  ///< most nodes of a tile; four times SN_BLOCK at least
 #define SN_NODE_CHUNK 256                  ///< nodes that one call of a kernel moves or sums
 #define SN_BRANCHES_MAX (SN_TERMS_MAX + 1) ///< exponentials and the viscous part
+
+/// A net that was crushed may stand with cells turned inside out: springs and mean pressures can
+/// balance there. Cells below this part of their volume then get a stress of their own, upright
+/// (J - SN_UPRIGHT), until none is.
+#define SN_UPRIGHT 0.3
 
 /// How an instantaneous stress becomes the stress with memory.
 typedef enum sn_memory_mode {
@@ -75,7 +84,8 @@ typedef struct sn_tile {
     void *growth;           ///< out of the volume pass, m3       (nodes)
 } sn_tile;
 
-/// The cells of one region. Arrays of items start at block 0 of the net.
+/// The cells of one region; on the smoothed rung its edges too, where the law and its memory then
+/// are. Arrays of items start at block 0 of the net.
 typedef struct sn_cell_pass {
     const void *gradient; ///< of shape functions 1 2 3, 1/m      (blocks x 9 x SN_BLOCK)
     const void *volume;   ///< m3                                 (blocks x SN_BLOCK)
@@ -88,9 +98,16 @@ typedef struct sn_cell_pass {
     int terms;
     sn_volume_mode volume_mode;
     double bulk;
+    double upright;        ///< Pa; 0: no cell is crushed. With SN_VOLUME_NODE
     const void *pressure;  ///< at the volume points
     int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< 6 components, 7 with SN_VOLUME_CELL
+    // smoothed
+    void *shape;            ///< of cells: three quads, the rows of V/6 H; V/6 in the first one
+    void *piola;            ///< of edges: three quads, the rows of the first Piola-Kirchhoff stress
+    const int *share_start; ///< into `share`                     (edge blocks x SN_BLOCK + 1)
+    const int *share;       ///< slots of the cells around an edge
+    const int *edge;        ///< slots of the edges of a cell     (blocks x 6 x SN_BLOCK)
 } sn_cell_pass;
 
 /// The volume points of one region: a node, as far as it belongs to this region.
@@ -139,7 +156,10 @@ typedef struct sn_spring_kernels {
     void (*volumes)(const sn_cell_pass *pass, const sn_tile *tile); ///< fills growth, by fans
     void (*points)(const sn_point_pass *pass, int block);
     void (*cells)(const sn_cell_pass *pass, const sn_tile *tile);
-    void (*press)(const sn_cell_pass *pass, const sn_tile *tile); ///< pressure alone, by fans
+    void (*press)(const sn_cell_pass *pass, const sn_tile *tile);  ///< pressure alone, by fans
+    void (*shapes)(const sn_cell_pass *pass, const sn_tile *tile); ///< cells to `shape`
+    void (*edges)(const sn_cell_pass *pass, int block);            ///< the law: shape to piola
+    void (*shares)(const sn_cell_pass *pass, const sn_tile *tile); ///< piola to forces of cells
     void (*springs)(const sn_spring_pass *pass, const sn_tile *tile);
     void (*nodes)(const sn_node_pass *pass, int chunk);
     void (*move)(const sn_move_pass *pass, int chunk);

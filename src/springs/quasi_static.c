@@ -400,13 +400,30 @@ static sn_status march(solver *v) {
     const sn_net *net = v->net;
     const double tiny = 1e-9 * net->until;
     const int corners = count_corners(net);
+    const size_t n = (size_t)net->nodes * 3;
     sn_moment moment;
-    if (!start_up(v)) return SN_OK;
-    moment = moment_of(v);
-    SN_TRY(sn_run_record(v->run, &moment));
-    pace p = set_pace(v, corners);
+    pace p = {0};
     double corner = sn_net_next_corner(net, 0.0);
-    for (long output = 1; v->s->time < net->until;) {
+    long output = 1;
+    const sn_piece own[] = {{&output, sizeof output},
+                            {&corner, sizeof corner},
+                            {&p, sizeof p},
+                            {&v->last_step, sizeof v->last_step},
+                            {v->last, n * sizeof *v->last},
+                            {v->inner, n * sizeof *v->inner}};
+    const int owned = (int)(sizeof own / sizeof *own);
+    if (sn_run_goes_on(v->run)) {
+        SN_TRY(sn_run_load(v->run, v->s, own, owned));
+        v->level = 1.0;
+        moment = moment_of(v);
+        SN_TRY(sn_run_frame(v->run, &moment));
+    } else {
+        if (!start_up(v)) return SN_OK;
+        moment = moment_of(v);
+        SN_TRY(sn_run_record(v->run, &moment));
+        p = set_pace(v, corners);
+    }
+    while (v->s->time < net->until) {
         double due = sn_run_output_time(net, output);
         double next = fmin(fmin(due, corner), net->until), left = next - v->s->time;
         double wish = fmin(p.wish, p.longest), h = left / ceil(left / wish - 1e-6);
@@ -426,6 +443,7 @@ static sn_status march(solver *v) {
             p = set_pace(v, corners);
             corner = sn_net_next_corner(net, next);
         }
+        if (next == due) SN_TRY(sn_run_save(v->run, v->s, own, owned));
     }
     return SN_OK;
 }

@@ -37,6 +37,10 @@ void sn_run_progress(sn_run *run, double time) {
 
 sn_status sn_run_record(sn_run *run, const sn_moment *moment) {
     SN_TRY(sn_net_history_row(run->net, moment, run->row, run->history));
+    return sn_run_frame(run, moment);
+}
+
+sn_status sn_run_frame(sn_run *run, const sn_moment *moment) {
     if (!run->output || !run->output->frame) return SN_OK;
     sn_fields_fill(run->net, run->fields, moment);
     return sn_fields_emit(run->fields, moment->time, run->output);
@@ -56,8 +60,8 @@ static int compare_double(const void *a, const void *b) {
 
 static void describe(const sn_net *net, sn_run_summary *s) {
     snprintf(s->engine, sizeof s->engine, "springs");
-    snprintf(s->model, sizeof s->model, "%s%s",
-             net->rung == SN_RUNG_CENTRAL ? "central" : "coupled", net->volume ? "+volume" : "");
+    static const char *const rungs[] = {"central", "coupled", "smoothed"};
+    snprintf(s->model, sizeof s->model, "%s%s", rungs[net->rung], net->volume ? "+volume" : "");
     s->nodes = net->nodes;
     s->cells = net->cells;
     s->springs = net->springs;
@@ -100,10 +104,22 @@ static void finish(sn_run *run) {
 
 sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                          sn_record *history) {
+    return sn_springs_resume(c, output, NULL, summary, history);
+}
+
+sn_status sn_springs_resume(const sn_case *c, const sn_output *output, const sn_restart *restart,
+                            sn_run_summary *summary, sn_record *history) {
     sn_net *net = NULL;
-    sn_run run = {.output = output, .summary = summary, .history = history, .started = sn_clock()};
+    sn_run run = {.output = output,
+                  .restart = restart,
+                  .summary = summary,
+                  .history = history,
+                  .started = sn_clock()};
     *summary = (sn_run_summary){.converged = true};
     sn_status status;
+    if (sn_run_goes_on(&run) && c->springs.integrator == SN_INTEGRATOR_IMPLICIT)
+        return sn_fail(SN_E_UNSUPPORTED, "springs: a run of integrator implicit cannot be "
+                                         "continued; explicit and quasi-static can");
     SN_TRY_GOTO(status, sn_net_create(c, &net));
     run.net = net;
     describe(net, summary);

@@ -25,15 +25,11 @@ enum { CHECK_FIRST = 64, CHECK_LEAST = 8, CHECK_MOST = 512 };
 static const double way_first = 0.05, way_least = 1e-4; // between looks, of an edge
 static const double way_most = 1.0, way_touched = 0.1;  // in quiet, and while a tool touches
 
+static const double lost_way = 1e3;  // of an edge in one step: nothing comes back from there
+static const double wild_way = 0.02; // of an edge in one step: a fiftieth of the speed of waves
+
 static size_t real_size(sn_precision p) {
     return p == SN_SINGLE ? sizeof(float) : sizeof(double);
-}
-
-static void put_real(sn_precision p, void *array, size_t i, double x) {
-    if (p == SN_SINGLE)
-        ((float *)array)[i] = (float)x;
-    else
-        ((double *)array)[i] = x;
 }
 
 sn_status sn_state_create(const sn_net *net, sn_state **state) {
@@ -57,12 +53,23 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->tool_pose = sn_alloc(tools, sizeof *s->tool_pose);
     s->tool_set = sn_alloc(tools, sizeof *s->tool_set);
     s->tool_force = sn_alloc(tools, sizeof *s->tool_force);
+    s->tool_torque = sn_alloc(tools, sizeof *s->tool_torque);
+    s->tool_phase = sn_alloc(tools, sizeof *s->tool_phase);
+    s->load_factor = sn_alloc((size_t)net->factor_count, sizeof *s->load_factor);
+    s->load_was = sn_alloc((size_t)net->factor_count, sizeof *s->load_was);
+    s->load_set = sn_alloc((size_t)net->factor_count, sizeof *s->load_set);
+    s->push = sn_alloc(nodes * 3, sizeof *s->push);
+    s->pushed = sn_alloc(nodes, sizeof *s->pushed);
+    s->grip = sn_alloc(nodes, sizeof *s->grip);
+    s->gripped = sn_alloc(nodes, sizeof *s->gripped);
     s->probe_trial = sn_alloc(steps ? nodes * 4 : 0, size);
     s->mode = sn_alloc(nodes * 3, sizeof *s->mode);
-    s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_WARM + 1) : 0, sizeof *s->basis);
+    s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_MAX + 1) : 0, sizeof *s->basis);
     bool all = s->u && s->v && s->f_before && s->store && s->factors && s->a_fixed && s->ext &&
                s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_trial &&
-               s->mode && s->basis && s->chunk_sum && s->chunk_fastest;
+               s->mode && s->basis && s->chunk_sum && s->chunk_fastest && s->tool_torque &&
+               s->tool_phase && s->load_factor && s->load_was && s->load_set && s->push &&
+               s->pushed && s->grip && s->gripped;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
         (steps && sn_scratch_create(net, net->precision, &s->probe) != SN_OK)) {
         sn_state_destroy(s);
@@ -83,27 +90,21 @@ void sn_state_destroy(sn_state *s) {
     sn_team_destroy(s->team);
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
-    void *all[] = {s->chunk_sum, s->chunk_fastest, s->u,        s->v,
-                   s->f_before,  s->store,         s->factors,  s->a_fixed,
-                   s->ext,       s->contact,       s->tool_set, s->tool_pose,
-                   s->mode,      s->probe_trial,   s->basis,    s->tool_force};
+    void *all[] = {s->chunk_sum,  s->chunk_fastest, s->u,          s->v,           s->f_before,
+                   s->store,      s->factors,       s->a_fixed,    s->ext,         s->contact,
+                   s->tool_set,   s->tool_pose,     s->mode,       s->probe_trial, s->basis,
+                   s->tool_force, s->tool_torque,   s->tool_phase, s->load_factor, s->load_was,
+                   s->load_set,   s->push,          s->pushed,     s->grip,        s->gripped};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(s);
 }
 
-// loads, contact and internal forces at the present place and time
-static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
-    const sn_force_call call = {.precision = s->precision,
-                                .mode = mode,
-                                .u = s->u,
-                                .factors = s->factors,
-                                .store = s->store,
-                                .out = &s->now,
-                                .team = s->team};
-    sn_net_forces(net, &call);
-    if (net->loaded_count == 0) return;
+// loads and contact at the present place and time, added to the forces
+static void find_outer(const sn_net *net, sn_state *s) {
     sn_net_clear_ext(net, s->ext);
-    sn_net_loads(net, s->time, s->precision, s->u, s->ext);
+    for (int l = 0; l < net->load_count; l++)
+        sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, s->time),
+                        s->precision, s->u, s->ext);
     for (int t = 0; t < net->tool_count; t++)
         sn_net_tool_pose(net, s, t, s->time, &s->tool_pose[t]);
     const sn_contact_call touch = {.precision = s->precision,
@@ -112,14 +113,41 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                    .before = s->contact,
                                    .after = s->contact,
                                    .ext = s->ext,
-                                   .tool_force = s->tool_force};
+                                   .tool_force = s->tool_force,
+                                   .tool_torque = s->tool_torque,
+                                   .grip = s->gripped_count > 0 ? s->grip : NULL};
     s->contact_omega2 = sn_net_contact(net, &touch);
     for (int k = 0; k < net->loaded_count; k++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)net->loaded[k] + (size_t)d;
-            put_real(s->precision, s->now.f, at,
-                     sn_real_at(s->precision, s->now.f, at) + s->ext[3 * net->loaded[k] + d]);
+            sn_real_put(s->precision, s->now.f, at,
+                        sn_real_at(s->precision, s->now.f, at) + s->ext[3 * net->loaded[k] + d]);
         }
+}
+
+// all forces at the present place and time
+static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
+    const sn_force_call call = {.precision = s->precision,
+                                .mode = mode,
+                                .u = s->u,
+                                .factors = s->factors,
+                                .store = s->store,
+                                .upright = s->crushed,
+                                .out = &s->now,
+                                .team = s->team};
+    sn_net_forces(net, &call);
+    if (net->loaded_count > 0) find_outer(net, s);
+    sn_state_add_pushes(net, s);
+    sn_state_pull_tools(net, s);
+}
+
+// forces after a sudden change: the branches take all of it, as by a step of no length
+static void change_suddenly(const sn_net *net, sn_state *s) {
+    sn_net_factors(net, 1e-12 * net->until, s->factors);
+    for (int r = 0; r < net->region_count; r++) // its impulse is over at once
+        if (net->region[r].memory.viscous > 0) s->factors[r].gain[net->region[r].memory.terms] = 0;
+    s->factors_step = 0;
+    find_forces(net, s, SN_MEMORY_ADVANCE);
 }
 
 // at rest, but for what is prescribed at the state's time
@@ -133,21 +161,18 @@ static void put_to_rest(const sn_net *net, sn_state *s) {
            (size_t)net->tool_count * (size_t)net->contact_count * sizeof *s->contact);
     for (int k = 0; k < net->fixed_count; k++) {
         const sn_net_fixed *fixed = &net->fixed[k];
-        put_real(s->precision, s->u, 4 * (size_t)fixed->node + (size_t)fixed->direction,
-                 sn_net_prescribed(net, fixed, s->time));
+        sn_real_put(s->precision, s->u, 4 * (size_t)fixed->node + (size_t)fixed->direction,
+                    sn_state_prescribed(net, s, fixed, s->time, false));
     }
-    // a sudden start: the branches take all of the stress, as by a step of no length
-    sn_net_factors(net, 1e-12 * net->until, s->factors);
-    for (int r = 0; r < net->region_count; r++) // its impulse is over at once
-        if (net->region[r].memory.viscous > 0) s->factors[r].gain[net->region[r].memory.terms] = 0;
-    s->factors_step = 0;
+    for (int t = 0; t < net->tool_count; t++) sn_state_release(net, s, t);
     s->omega2 = s->seen_omega2 = net->omega2;
     s->check_way = way_first * net->edge;
     if (net->mode) memcpy(s->mode, net->mode, nodes * 3 * sizeof *s->mode);
     s->check_every = s->check_in = CHECK_FIRST;
     s->moved = 0;
     s->last_step = 0;
-    find_forces(net, s, SN_MEMORY_ADVANCE);
+    s->crushed = false;
+    change_suddenly(net, s);
     memcpy(s->f_before, s->now.f, nodes * 4 * size);
 }
 
@@ -157,14 +182,8 @@ void sn_state_reset(const sn_net *net, sn_state *s) {
     s->warnings = 0;
     s->broken = false;
     s->damped_energy = 0;
-    for (int t = 0; t < net->tool_count; t++) s->tool_set[t] = false;
+    sn_state_clear_imposed(net, s);
     put_to_rest(net, s);
-}
-
-void sn_state_set_tool(const sn_net *net, sn_state *s, int tool, const sn_pose *pose) {
-    SN_ASSERT(tool >= 0 && tool < net->tool_count);
-    s->tool_set[tool] = true;
-    s->tool_pose[tool] = *pose;
 }
 
 //---- damping -------------------------------------------------------------------------------------
@@ -252,12 +271,12 @@ static void damp(const sn_net *net, sn_state *s, double h) {
             r[d] = net->node_position[3 * i + d] +
                    sn_real_at(s->precision, s->u, 4 * (size_t)i + (size_t)d) - move.centre[d];
         for (int d = 0; d < 3; d++) {
-            if (net->fixed_bits[i] >> d & 1) continue;
+            if (net->fixed_bits[i] >> d & 1 || s->grip[i].tool >= 0) continue;
             int e = (d + 1) % 3, g = (d + 2) % 3;
             double rigid = move.linear[d] + move.spin[e] * r[g] - move.spin[g] * r[e];
             size_t at = 4 * (size_t)i + (size_t)d;
             double v = sn_real_at(s->precision, s->v, at);
-            put_real(s->precision, s->v, at, rigid + keep * (v - rigid));
+            sn_real_put(s->precision, s->v, at, rigid + keep * (v - rigid));
         }
     }
     s->damped_energy += before - kinetic(net, s);
@@ -303,18 +322,32 @@ static void move_prescribed(const sn_net *net, sn_state *s, double h) {
         const sn_net_fixed *fixed = &net->fixed[k];
         const size_t at = 4 * (size_t)fixed->node + (size_t)fixed->direction;
         // from the exact places: differences of rounded ones would shake
-        double there = sn_net_prescribed(net, fixed, s->time + h);
-        double v = (there - sn_net_prescribed(net, fixed, s->time)) / h;
+        double there = sn_state_prescribed(net, s, fixed, s->time + h, false);
+        double v = (there - sn_state_prescribed(net, s, fixed, s->time, true)) / h;
         double before = s->steps == 0 ? v : sn_real_at(s->precision, s->v, at);
         s->a_fixed[k] = (v - before) / h;
-        put_real(s->precision, s->v, at, v);
-        put_real(s->precision, s->u, at, there);
+        sn_real_put(s->precision, s->v, at, v);
+        sn_real_put(s->precision, s->u, at, there);
     }
+    for (int l = 0; l < net->factor_count; l++)
+        s->load_was[l] = s->load_set[l] ? s->load_factor[l] : (double)NAN;
+}
+
+static sn_frequency_call frequency_call(sn_state *s, int steps) {
+    return (sn_frequency_call){.precision = s->precision,
+                               .u = s->u,
+                               .trial = s->probe_trial,
+                               .mode = s->mode,
+                               .basis = s->basis,
+                               .steps = steps,
+                               .scratch = &s->probe,
+                               .team = s->team,
+                               .upright = s->crushed};
 }
 
 static void look_at_frequency(const sn_net *net, sn_state *s) {
-    const sn_frequency_call call = {s->precision,    s->u,      s->probe_trial, s->mode, s->basis,
-                                    SN_LANCZOS_WARM, &s->probe, s->team};
+    sn_state_look_at_cells(net, s);
+    const sn_frequency_call call = frequency_call(s, SN_LANCZOS_WARM);
     double omega2 = sn_net_frequency(net, &call);
     if (isfinite(omega2) && omega2 > 0) {
         double growth = omega2 / s->seen_omega2;
@@ -333,6 +366,14 @@ static void look_at_frequency(const sn_net *net, sn_state *s) {
     s->moved = 0;
 }
 
+static bool forces_are_finite(const sn_net *net, const sn_state *s) {
+    double sum = 0; // not finite as soon as one is not: single precision cannot overflow it
+    for (int i = 0; i < net->nodes; i++)
+        for (size_t d = 0; d < 3; d++)
+            sum += fabs(sn_real_at(s->precision, s->now.f, 4 * (size_t)i + d));
+    return isfinite(sum);
+}
+
 sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     SN_ASSERT(net->integrator == SN_INTEGRATOR_EXPLICIT && dt > 0);
     double limit = SN_STEP_SAFETY * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
@@ -343,22 +384,28 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
         s->factors_step = h;
     }
     if (net->damping > 0) damp(net, s, h);
+    sn_state_remember_grips(s);
     void *f = s->now.f;
     s->now.f = s->f_before;
     s->f_before = f;
     double sum, fastest;
     move_nodes(net, s, f, h, &sum, &fastest);
     move_prescribed(net, s, h);
+    sn_state_move_grips(net, s, h);
     s->time += h;
     s->last_step = h;
     s->steps++;
-    if (!isfinite(sum)) {
+    if (isfinite(sum)) find_forces(net, s, SN_MEMORY_ADVANCE);
+    // forces overflow only where something has moved far within the step, or was put there
+    const bool lost = !(h * fastest < lost_way * net->edge);
+    const bool wild =
+        h * fastest > wild_way * net->edge || net->factor_count + s->gripped_count > 0;
+    if (!isfinite(sum) || lost || (wild && !forces_are_finite(net, s))) {
         s->broken = true;
         s->warnings++;
         put_to_rest(net, s);
         return (sn_step_info){s->time, h, s->warnings};
     }
-    find_forces(net, s, SN_MEMORY_ADVANCE);
     s->moved += h * fastest;
     s->check_in--;
     double way = s->contact_omega2 > 0 ? fmin(s->check_way, way_touched * net->edge) : s->check_way;
@@ -367,15 +414,51 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     return (sn_step_info){s->time, h, s->warnings};
 }
 
-void sn_state_positions(const sn_net *net, const sn_state *s, double *out) {
-    for (int i = 0; i < net->nodes; i++)
-        for (int d = 0; d < 3; d++)
-            out[3 * net->node_name[i] + d] =
-                net->node_position[3 * i + d] +
-                sn_real_at(s->precision, s->u, 4 * (size_t)i + (size_t)d);
+//---- another net ---------------------------------------------------------------------------------
+
+static bool same_body(const sn_net *a, const sn_net *b) {
+    const size_t nodes = (size_t)a->nodes, corners = (size_t)a->cell_blocks * 4 * SN_BLOCK;
+    return a->nodes == b->nodes && a->cell_blocks == b->cell_blocks && a->rung == b->rung &&
+           a->volume_mode == b->volume_mode && a->integrator == b->integrator &&
+           a->precision == b->precision && a->region_count == b->region_count &&
+           a->spring_blocks == b->spring_blocks && a->tool_count == b->tool_count &&
+           a->contact_count == b->contact_count && a->factor_count == b->factor_count &&
+           a->fixed_count == b->fixed_count && a->part_count == b->part_count &&
+           memcmp(a->node_position, b->node_position, nodes * 3 * sizeof(double)) == 0 &&
+           memcmp(a->cell_node, b->cell_node, corners * sizeof(int)) == 0;
 }
 
-void sn_state_tool_force(const sn_net *net, const sn_state *s, int tool, double force[3]) {
-    SN_ASSERT(tool >= 0 && tool < net->tool_count);
-    memcpy(force, s->tool_force[tool], 3 * sizeof *force);
+static bool same_branches(const sn_net *a, const sn_net *b) {
+    for (int r = 0; r < a->region_count; r++)
+        if (a->region[r].branches != b->region[r].branches) return false;
+    return true;
+}
+
+// the highest frequency at the present place, not followed from before
+static void find_frequency(const sn_net *net, sn_state *s) {
+    memcpy(s->mode, net->mode, (size_t)net->nodes * 3 * sizeof *s->mode);
+    const sn_frequency_call call = frequency_call(s, SN_LANCZOS_MAX);
+    double omega2 = fmax(sn_net_frequency(net, &call), sn_net_frequency(net, &call));
+    s->seen_omega2 = isfinite(omega2) && omega2 > 0 ? omega2 : net->omega2;
+    double stiffer = fmin(1.0, fmax(0.0, 2.0 * (s->seen_omega2 / net->omega2 - 1.0)));
+    s->omega2 = fmax(s->seen_omega2 * (1.0 + 0.44 * stiffer), net->omega2);
+    s->check_in = s->check_every = CHECK_LEAST;
+    s->moved = 0;
+}
+
+sn_status sn_state_move(const sn_net *from, const sn_net *to, sn_state *s) {
+    if (!same_body(from, to) || to->integrator != SN_INTEGRATOR_EXPLICIT)
+        return sn_fail(SN_E_DEFINITION,
+                       "the state cannot go on with this net: mesh, model, precision, supports, "
+                       "number of loads and tools must be the same, the integrator explicit");
+    if (!same_branches(from, to)) {
+        const size_t size = real_size(s->precision);
+        void *store = sn_resize(s->store, to->store_size, size);
+        if (!store && to->store_size > 0) return SN_E_MEMORY;
+        s->store = store;
+        if (store) memset(store, 0, to->store_size * size);
+    }
+    change_suddenly(to, s);
+    find_frequency(to, s);
+    return SN_OK;
 }

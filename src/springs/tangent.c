@@ -9,25 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "springs/net.h"
-
-/// A sparse matrix of blocks by rows; columns rise within a row.
-typedef struct pattern {
-    int rows;
-    int *start;  ///< (rows + 1)
-    int *column; ///< (start[rows])
-} pattern;
-
-struct sn_tangent {
-    pattern cells;         // nodes by nodes
-    double *block;         // 3 x 3 blocks
-    pattern points;        // volume points by nodes
-    double *flux;          // b: 3 numbers an entry
-    double *stiffness;     // alpha K / V of each point
-    double *inverse;       // of the diagonal blocks
-    double *along;         // scratch of the points
-    double *r, *z, *p, *q; // scratch of the solver
-};
+#include "springs/tangent.h"
 
 //---- patterns ------------------------------------------------------------------------------------
 
@@ -37,7 +19,7 @@ static int compare_int(const void *a, const void *b) {
 }
 
 // rows[4 a cell slot] are the rows that a cell touches, at [(block * 4 + corner) * SN_BLOCK + lane]
-static sn_status create_pattern(const sn_net *net, int rows, const int *row_of, pattern *p) {
+static sn_status create_pattern(const sn_net *net, int rows, const int *row_of, sn_sparsity *p) {
     const double *volume = net->data[SN_DOUBLE].volume;
     p->rows = rows;
     p->start = sn_alloc((size_t)rows + 1, sizeof *p->start);
@@ -77,25 +59,16 @@ static sn_status create_pattern(const sn_net *net, int rows, const int *row_of, 
     return SN_OK;
 }
 
-static int find(const pattern *p, int row, int column) {
-    int low = p->start[row], high = p->start[row + 1] - 1;
-    while (low < high) {
-        int middle = low + (high - low) / 2;
-        if (p->column[middle] < column)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 sn_status sn_tangent_create(const sn_net *net, sn_tangent **tangent) {
     *tangent = NULL;
     sn_tangent *t = sn_alloc(1, sizeof *t);
     if (!t) return SN_E_MEMORY;
     const size_t n = (size_t)net->nodes * 3, points = (size_t)net->point_blocks * SN_BLOCK;
     sn_status status;
-    SN_TRY_GOTO(status, create_pattern(net, net->nodes, net->cell_node, &t->cells));
+    if (net->rung == SN_RUNG_SMOOTHED)
+        SN_TRY_GOTO(status, sn_tangent_create_edges(net, t));
+    else
+        SN_TRY_GOTO(status, create_pattern(net, net->nodes, net->cell_node, &t->cells));
     t->block = sn_alloc((size_t)t->cells.start[net->nodes] * 9, sizeof *t->block);
     if (net->volume) {
         SN_TRY_GOTO(status, create_pattern(net, (int)points, net->cell_point, &t->points));
@@ -124,6 +97,7 @@ fail:
 
 void sn_tangent_destroy(sn_tangent *t) {
     if (!t) return;
+    sn_tangent_destroy_edges(t);
     void *all[] = {t->cells.start,
                    t->cells.column,
                    t->block,
@@ -196,23 +170,11 @@ typedef struct law_values {
     double E[6 * SN_BLOCK], S[6 * SN_BLOCK], D[21 * SN_BLOCK];
 } law_values;
 
-// rows of d(e)/d(u_a), e = (E_xx, E_yy, E_zz, 2 E_xy, 2 E_yz, 2 E_zx)
-static void strain_rows(const double F[9], const double g[3], double B[6][3]) {
-    for (int c = 0; c < 3; c++) {
-        const double *f = F + 3 * c;
-        for (int k = 0; k < 3; k++) {
-            int l = (k + 1) % 3;
-            B[k][c] = f[k] * g[k];
-            B[3 + k][c] = f[k] * g[l] + f[l] * g[k];
-        }
-    }
-}
-
 // V (B^T D B + g.S g I), with D and S as they act now
 static void add_law(const cell_values *c, const double *S, double D[6][6], double K[4][4][9]) {
     double B[4][6][3], DB[4][6][3];
     for (int a = 0; a < 4; a++) {
-        strain_rows(c->F, c->g[a], B[a]);
+        sn_strain_rows(c->F, c->g[a], B[a]);
         for (int k = 0; k < 6; k++)
             for (int j = 0; j < 3; j++) {
                 DB[a][k][j] = 0;
@@ -245,17 +207,10 @@ static void add_volume(const cell_values *c, double bulk, double p, double K[4][
                 }
 }
 
-// component k of the stress with memory
-static double with_memory(const sn_net_region *region, const sn_tangent_call *call, double alpha,
-                          size_t first, size_t at, double T) {
-    if (region->branches == 0 || !call->factors) return T;
-    return alpha * T + call->history[first + at];
-}
-
 static void spread(sn_tangent *t, const cell_values *c, double K[4][4][9]) {
     for (int a = 0; a < 4; a++)
         for (int b = 0; b < 4; b++) {
-            double *to = t->block + 9 * (size_t)find(&t->cells, c->node[a], c->node[b]);
+            double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, c->node[a], c->node[b]);
             for (int k = 0; k < 9; k++) to[k] += K[a][b][k];
         }
 }
@@ -264,8 +219,9 @@ static void add_flux(const sn_net *net, sn_tangent *t, int slot, const cell_valu
     const int at = (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
     for (int a = 0; a < 4; a++)
         for (int b = 0; b < 4; b++) {
-            double *to = t->flux + 3 * (size_t)find(&t->points, net->cell_point[at + a * SN_BLOCK],
-                                                    c->node[b]);
+            double *to = t->flux + 3 * (size_t)sn_sparsity_find(&t->points,
+                                                                net->cell_point[at + a * SN_BLOCK],
+                                                                c->node[b]);
             for (int k = 0; k < 3; k++) to[k] += 0.25 * c->V * c->cof[b][k];
         }
 }
@@ -311,14 +267,14 @@ static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region
         find_values(net, slot, call->u, &c);
         if (coupled) {
             for (size_t k = 0; k < 6; k++)
-                S[k] = with_memory(region, call, alpha, region->cell_store,
-                                   base + k * SN_BLOCK + lane, law->S[k * SN_BLOCK + lane]);
+                S[k] = sn_tangent_stress(region, call, alpha, region->cell_store,
+                                         base + k * SN_BLOCK + lane, law->S[k * SN_BLOCK + lane]);
             unpack(law->D, lane, alpha, D);
             add_law(&c, S, D, K);
         }
-        if (net->volume_mode == SN_VOLUME_CELL) {
-            double p = with_memory(region, call, alpha, region->cell_store,
-                                   base + 6 * SN_BLOCK + lane, region->bulk * (c.J - 1.0));
+        if (coupled && net->volume_mode == SN_VOLUME_CELL) {
+            double p = sn_tangent_stress(region, call, alpha, region->cell_store,
+                                         base + 6 * SN_BLOCK + lane, region->bulk * (c.J - 1.0));
             add_volume(&c, alpha * region->bulk, p, K);
         } else if (net->volume_mode == SN_VOLUME_NODE) {
             add_volume(&c, 0.0, mean_pressure(net, call->pressure, slot), K);
@@ -353,13 +309,13 @@ static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *re
         tension = fabs(B * s) < 1e-12 ? s : expm1(B * s) / B;
         slope = exp(B * s);
     }
-    tension = with_memory(region, call, alpha, region->spring_store,
-                          (size_t)(slot - region->spring_block * SN_BLOCK), tension);
+    tension = sn_tangent_stress(region, call, alpha, region->spring_store,
+                                (size_t)(slot - region->spring_block * SN_BLOCK), tension);
     double across = k * tension / lambda;
     double along = k * (alpha * slope - tension / lambda) / (lambda * lambda) * inverse;
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++) {
-            double *to = t->block + 9 * (size_t)find(&t->cells, end[a], end[b]);
+            double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, end[a], end[b]);
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++)
                     to[3 * i + j] += (a == b ? 1 : -1) * (along * x[i] * x[j] + (i == j) * across);
@@ -379,6 +335,7 @@ void sn_tangent_assemble(const sn_net *net, sn_tangent *t, const sn_tangent_call
         if (net->rung == SN_RUNG_COUPLED || net->volume)
             for (int b = g->cell_block; b < g->cell_block + g->cell_blocks; b++)
                 assemble_block(net, t, g, alpha, b, call, &law);
+        if (net->rung == SN_RUNG_SMOOTHED) sn_tangent_add_edges(net, t, g, alpha, call);
         if (net->rung == SN_RUNG_CENTRAL)
             for (int s = g->spring_block * SN_BLOCK;
                  s < (g->spring_block + g->spring_blocks) * SN_BLOCK; s++)
@@ -391,7 +348,7 @@ void sn_tangent_assemble(const sn_net *net, sn_tangent *t, const sn_tangent_call
 }
 
 void sn_tangent_add(sn_tangent *t, int node, const double block[9]) {
-    double *to = t->block + 9 * (size_t)find(&t->cells, node, node);
+    double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, node, node);
     for (int k = 0; k < 9; k++) to[k] += block[k];
 }
 
@@ -412,7 +369,7 @@ static void invert(const double A[9], double out[9]) {
 void sn_tangent_prepare(const sn_net *net, sn_tangent *t) {
     // the diagonal, gathered in `inverse`
     for (int i = 0; i < net->nodes; i++)
-        memcpy(t->inverse + 9 * (size_t)i, t->block + 9 * (size_t)find(&t->cells, i, i),
+        memcpy(t->inverse + 9 * (size_t)i, t->block + 9 * (size_t)sn_sparsity_find(&t->cells, i, i),
                9 * sizeof(double));
     for (int p = 0; p < t->points.rows; p++)
         for (int k = t->points.start[p]; k < t->points.start[p + 1]; k++) {

@@ -265,7 +265,7 @@ sn_status sn_net_build_tiles(const sn_case *c, sn_net *net) {
     SN_TRY(cut_all(c->mesh, net));
     // fans give forces of their own only where cells do not
     const sn_tiles *springs = &net->spring_tiles, *fans = &net->fan_tiles;
-    const sn_tiles *other = net->rung == SN_RUNG_COUPLED ? &net->cell_tiles : fans;
+    const sn_tiles *other = net->rung != SN_RUNG_CENTRAL ? &net->cell_tiles : fans;
     const int own = sn_tiles_entries(springs), all = own + sn_tiles_entries(other);
     net->part_count = all;
     net->other_part = own;

@@ -72,3 +72,15 @@ holds "($(last tip_uz point-springs/history.csv) / $(last tip_uz point-continuum
 sed 's/element: P1/element: P2/; s/point: \[6 mm, 6 mm, 6 mm\], force/point: [5.3 mm, 6.1 mm, 4.4 mm], force/' point.yaml >inside.yaml
 "$SINEW" run inside.yaml --engine continuum --out inside --quiet
 holds "($(last foot_fz inside/history.csv) - 5e-3)^2 < 1e-7^2"
+
+# grasping: springs with motion alone
+case_of held "tools: [{name: t, sphere: 4 mm, at: [6 mm, 6 mm, 10.01 mm], path: [[0 s, 0 mm, 0 mm, 0 mm], [0.1 s, 0 mm, 0 mm, -0.5 mm], [0.3 s, 0 mm, 0 mm, 1 mm]], grasp: [0.1 s, 0.35 s]}]"
+fails 2 "continuum: tool \"t\": grasp is not supported" "$SINEW" run held.yaml --engine continuum
+fails 2 "grasp needs integrator explicit" "$SINEW" run held.yaml --engine springs
+sed 's/quasi-static, precision/explicit, damping: 100 1\/s, precision/' held.yaml >moved.yaml
+"$SINEW" run moved.yaml --engine springs --out moved --quiet
+# pushed at 0.1 s, pulled at 0.3 s (to rest within 1 %), let go at 0.4 s
+awk -F, 'NR == 3 && !($10 > 0) || NR == 5 && !($10 < -1e-3) || NR == 6 && $10 != 0 { print; bad = 1 } END { exit bad }' \
+    "moved/history.csv" || die "the tool's force: $(cat moved/history.csv)"
+sed 's/grasp: .*s\]/grasp: [2 s, 1 s]/' held.yaml >back.yaml
+fails 2 "two rising times" "$SINEW" run back.yaml --engine springs

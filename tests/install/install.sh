@@ -13,6 +13,10 @@ cc "$SOURCE/tests/install/relax.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -o r
 cc "$SOURCE/examples/embed/poke.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -o poke
 LD_LIBRARY_PATH=$library ./poke >poke.log || die "the embedding example: $(cat poke.log)"
 
+cc "$SOURCE/examples/embed/haptic.c" $flags ${SANITIZE:+-fsanitize=$SANITIZE} -lm -o haptic
+LD_LIBRARY_PATH=$library ./haptic 0.3 >haptic.log || die "the haptic example: $(cat haptic.log)"
+[ "$(awk '/ ms / { n += $4 } END { print n }' haptic.log)" = 300 ] || die "frames: $(cat haptic.log)"
+
 cmake -S "$SOURCE/tests/install" -B outside -DCMAKE_PREFIX_PATH="$PWD/prefix" \
     ${SANITIZE:+-DCMAKE_C_FLAGS=-fsanitize=$SANITIZE} >cmake.log
 cmake --build outside >>cmake.log

@@ -69,12 +69,13 @@ static sn_case *pulled_block(const sn_tissue *t) {
 
 static void fields_of_a_uniform_stretch(void **state) {
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 6; k++) { // from 4: smoothed
         sn_tissue t = k < 2 ? demiray(2e3, 4, 4e4) : guccione(1e3, 4e4);
         if (k == 3) t.memory = prony(0.2, 1e4, 0.1, 2e4); // has not begun to relax: the same
         sn_case *c = pulled_block(&t);
         c->fibre[2] = 1; // second and third axes are then x and y
         c->springs.volume = k % 2;
+        if (k >= 4) c->springs.rung = SN_RUNG_SMOOTHED;
         seen s = {.c = c};
         sn_output output = {&s, look, tell};
         sn_run_summary summary;
@@ -159,7 +160,7 @@ static void virial_carries_the_force(void **state) {
 // Two tissues in a row carry one force.
 static void regions_carry_one_force(void **state) {
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         sn_tissue t = neo_hookean(3e3, 2e4);
         sn_case *c = pulled_block(&t);
         c->mesh->region_count = 2;
@@ -174,7 +175,7 @@ static void regions_carry_one_force(void **state) {
         c->tissue[1] = demiray(1e3, 3, 1e4);
         c->tissue[1].memory = prony(0.3, 0.1, 0.1, 3);
         c->springs.volume = k > 0;
-        c->springs.rung = k == 2 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
+        c->springs.rung = k == 2 ? SN_RUNG_CENTRAL : k == 3 ? SN_RUNG_SMOOTHED : SN_RUNG_COUPLED;
         add_probe(c, "hold", SN_PROBE_REACTION, "left", 0, 0, 0);
         add_probe(c, "middle", SN_PROBE_POINT, "", 0.5 * size[0], 0, 0);
         sn_run_summary s;
@@ -271,11 +272,11 @@ static void counted_release(void *context, void *block) {
     free(block);
 }
 
-static void steps_do_not_allocate(void **state) {
-    (void)state;
+static void steps_of(sn_rung rung) {
     sn_tissue t = demiray(2e3, 4, 4e4);
     t.memory = prony(0.3, 0.01, 0.2, 0.2);
     sn_case *c = make_block(size, cells, SN_PATTERN_MIRRORED, &t);
+    c->springs.rung = rung;
     c->springs.damping = 5;
     add_support(c, "bottom", "xyz");
     add_tool(c, "probe", 0.01, (const double[]){0.02, 0.01, 0.0301}, (const double[]){0, 0, 0}, 1);
@@ -309,14 +310,20 @@ static void steps_do_not_allocate(void **state) {
     sn_case_destroy(c);
 }
 
+static void steps_do_not_allocate(void **state) {
+    (void)state;
+    static const sn_rung rungs[] = {SN_RUNG_COUPLED, SN_RUNG_SMOOTHED, SN_RUNG_CENTRAL};
+    for (int k = 0; k < 3; k++) steps_of(rungs[k]);
+}
+
 static void shortage_is_reported(void **state) {
     (void)state;
     sn_tissue t = demiray(2e3, 4, 4e4);
     t.memory = prony(0.3, 0.01, 0.2, 0.2);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         sn_case *c = pulled_block(&t);
         c->until = 0.1;
-        c->springs.rung = k == 1 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
+        c->springs.rung = k == 1 ? SN_RUNG_CENTRAL : k == 3 ? SN_RUNG_SMOOTHED : SN_RUNG_COUPLED;
         c->springs.integrator = k == 2 ? SN_INTEGRATOR_EXPLICIT : SN_INTEGRATOR_QUASI_STATIC;
         c->springs.precision = SN_SINGLE;
         for (long n = 0;; n++) {
@@ -354,6 +361,12 @@ static void bench_gives_rows(void **state) {
     assert_int_equal(row.cells, 162);
     assert_true(row.springs_per_second > 0 && row.cells_per_second > 0 && row.bound_per_second > 0);
     assert_true(row.plain_per_second > 0 && row.step_s > 0 && row.real_time_factor > 0);
+    plan.rung = SN_RUNG_SMOOTHED;
+    CHECK_OK(sn_springs_bench(&plan, &row));
+    assert_string_equal(row.model, "smoothed");
+    assert_true(row.springs == 0 && row.cells_per_second > 0 && row.bound_per_second > 0);
+    assert_true(row.plain_per_second > 0 && row.real_time_factor > 0);
+    plan.rung = SN_RUNG_CENTRAL;
     plan.law = "demiray";
     CHECK_FAILS(sn_springs_bench(&plan, &row), SN_E_NAME, "exponential for central");
     plan.cells = 0;

@@ -35,7 +35,7 @@ static void every_task_runs_once(void **state) {
 
 //---- cases ---------------------------------------------------------------------------------------
 
-enum { KINDS = 8 };
+enum { KINDS = 10 }; // from 8: smoothed
 
 // pulled, pressed and poked; two tissues
 static sn_case *some_case(int kind) {
@@ -51,8 +51,10 @@ static sn_case *some_case(int kind) {
     c->tissue = sn_resize(c->tissue, 2, sizeof *c->tissue);
     c->tissue[1] = demiray(4e3, 3, 6e4);
     c->springs.precision = kind % 2 ? SN_SINGLE : SN_DOUBLE;
-    c->springs.rung = kind / 2 % 2 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
-    c->springs.volume = kind >= 4 || kind / 2 == 0;
+    c->springs.rung = kind >= 8      ? SN_RUNG_SMOOTHED
+                      : kind / 2 % 2 ? SN_RUNG_CENTRAL
+                                     : SN_RUNG_COUPLED;
+    c->springs.volume = (kind >= 4 && kind < 9) || kind / 2 == 0;
     add_support(c, "left", "xyz");
     add_load(c, SN_LOAD_DISPLACEMENT, "right", 0.004, 0.002, 0, 0.01);
     add_load(c, SN_LOAD_PRESSURE, "front", 0, 0, 0, 0.01)->pressure = 200;

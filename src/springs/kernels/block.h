@@ -138,18 +138,21 @@ SN_INLINE void block_pressure(const tile_nodes *nodes, const uint16_t *corner, i
                           from[2 * (size_t)corner[i + 2]], from[2 * (size_t)corner[i + 3]]});
 }
 
-/// Four numbers each of x, y and z become quads.
-SN_INLINE void block_take(const real *x, const real *y, const real *z, quad q[4]) {
-    const quad none = {0, 0, 0, 0};
-    quad X = quad_load(x), Y = quad_load(y), Z = quad_load(z);
+/// Four numbers each of x, y, z and w become quads.
+SN_INLINE void quad_turn(quad X, quad Y, quad Z, quad W, quad q[4]) {
     quad low = __builtin_shufflevector(X, Y, 0, 4, 1, 5);
     quad high = __builtin_shufflevector(X, Y, 2, 6, 3, 7);
-    quad zlow = __builtin_shufflevector(Z, none, 0, 4, 1, 5);
-    quad zhigh = __builtin_shufflevector(Z, none, 2, 6, 3, 7);
+    quad zlow = __builtin_shufflevector(Z, W, 0, 4, 1, 5);
+    quad zhigh = __builtin_shufflevector(Z, W, 2, 6, 3, 7);
     q[0] = __builtin_shufflevector(low, zlow, 0, 1, 4, 5);
     q[1] = __builtin_shufflevector(low, zlow, 2, 3, 6, 7);
     q[2] = __builtin_shufflevector(high, zhigh, 0, 1, 4, 5);
     q[3] = __builtin_shufflevector(high, zhigh, 2, 3, 6, 7);
+}
+
+/// Four numbers each of x, y and z become quads.
+SN_INLINE void block_take(const real *x, const real *y, const real *z, quad q[4]) {
+    quad_turn(quad_load(x), quad_load(y), quad_load(z), (quad){0, 0, 0, 0}, q);
 }
 
 /// Adds quads to the force of nodes of the tile, one after the other.

@@ -1,158 +1,21 @@
-// Forces and volumes of cells whose six edges share one strain energy.
+// Forces of cells whose six edges share one strain energy.
 // SPDX-License-Identifier: Apache-2.0
-// Source: equation (16); memory by equations (33)-(35) on the second Piola-Kirchhoff stress.
-//
-// With g_a the gradients of the shape functions in material axes, H = sum u_a g_a and Q the
-// rotation to material axes,
-//     F = Q^T + H,  M = Q H,  E = (M + M^T + M^T M)/2,  J - 1 = tr M + minors of M + det M
-// so that small strains lose no digits. Stresses S (law) and p (volume) give the nodal forces
-//     f_a = -V (F S + p cof F) g_a,   f_0 = -(f_1 + f_2 + f_3).
-#include "springs/kernels/block.h"
+#include "springs/kernels/cells.h"
 
 void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile);
-
-typedef struct cell_block {
-    real H[9 * SN_BLOCK]; // displacement gradient; before that differences of displacements
-    real E[6 * SN_BLOCK];
-    real T[7 * SN_BLOCK];  // stress: six components of S, then p
-    real f[12 * SN_BLOCK]; // forces on the corners
-} cell_block;
-
-static const block_layout layout = {
-    .width = SN_BLOCK, .component = SN_BLOCK, .spoke = 3 * SN_BLOCK};
-
-SN_INLINE void load9(const real *from, int i, wide x[9]) {
-    for (int k = 0; k < 9; k++) x[k] = wide_load(from + k * SN_BLOCK + i);
-}
-
-// mean of the pressure of the corners; difference: of corners 1 2 3 from corner 0
-SN_INLINE void mean_pressure(const tile_nodes *nodes, const uint16_t *corner,
-                             const real *difference, real *p) {
-    const real quarter = (real)0.25;
-    block_pressure(nodes, corner, SN_BLOCK, p);
-    for (int i = 0; i < SN_BLOCK; i += SN_LANES)
-        wide_store(p + i, wide_load(p + i) + quarter * (wide_load(difference + i) +
-                                                        wide_load(difference + SN_BLOCK + i) +
-                                                        wide_load(difference + 2 * SN_BLOCK + i)));
-}
-
-// H = sum over corners 1 2 3 of (u_a - u_0) g_a, and p
-SN_INLINE void displacement_gradient(const sn_cell_pass *pass, const tile_nodes *nodes,
-                                     const uint16_t *corner, size_t at, cell_block *c) {
-    const real *gradient = (const real *)pass->gradient + 9 * at;
-    const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
-    if (nodal) {
-        block_spokes(nodes, corner, 3, layout, c->H, NULL, c->f);
-        mean_pressure(nodes, corner, c->f, c->T + 6 * SN_BLOCK);
-    } else {
-        block_spokes(nodes, corner, 3, layout, c->H, NULL, NULL);
-    }
-    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
-        wide d[9], g[9];
-        load9(c->H, i, d);
-        load9(gradient, i, g);
-        for (int r = 0; r < 3; r++)
-            for (int s = 0; s < 3; s++)
-                wide_store(c->H + (3 * r + s) * SN_BLOCK + i,
-                           d[r] * g[s] + d[3 + r] * g[3 + s] + d[6 + r] * g[6 + s]);
-    }
-}
-
-// M = Q H, or H itself
-SN_INLINE void to_axes(const sn_cell_pass *pass, const wide H[9], wide M[9]) {
-    if (!pass->rotated) {
-        for (int k = 0; k < 9; k++) M[k] = H[k];
-        return;
-    }
-    real Q[9];
-    for (int k = 0; k < 9; k++) Q[k] = (real)pass->axes[k];
-    for (int r = 0; r < 3; r++)
-        for (int s = 0; s < 3; s++)
-            M[3 * r + s] = Q[3 * r] * H[s] + Q[3 * r + 1] * H[3 + s] + Q[3 * r + 2] * H[6 + s];
-}
-
-// J - 1
-SN_INLINE wide growth(const wide M[9]) {
-    wide xx = M[4] * M[8] - M[5] * M[7], yy = M[0] * M[8] - M[2] * M[6];
-    wide zz = M[0] * M[4] - M[1] * M[3];
-    wide det = M[0] * xx - M[1] * (M[3] * M[8] - M[5] * M[6]) + M[2] * (M[3] * M[7] - M[4] * M[6]);
-    return (M[0] + M[4] + M[8]) + (xx + yy + zz) + det;
-}
-
-SN_INLINE void strain(const sn_cell_pass *pass, cell_block *c) {
-    const real half = (real)0.5, bulk = (real)pass->bulk;
-    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
-        wide H[9], M[9];
-        load9(c->H, i, H);
-        to_axes(pass, H, M);
-        for (int k = 0; k < 3; k++)
-            wide_store(c->E + k * SN_BLOCK + i,
-                       M[4 * k] + half * (M[k] * M[k] + M[3 + k] * M[3 + k] + M[6 + k] * M[6 + k]));
-        for (int k = 0; k < 3; k++) { // xy yz zx
-            int r = k, s = (k + 1) % 3;
-            wide e = M[3 * r + s] + M[3 * s + r] + M[r] * M[s] + M[3 + r] * M[3 + s] +
-                     M[6 + r] * M[6 + s];
-            wide_store(c->E + (3 + k) * SN_BLOCK + i, half * e);
-        }
-        if (pass->volume_mode == SN_VOLUME_CELL)
-            wide_store(c->T + 6 * SN_BLOCK + i, bulk * growth(M));
-    }
-}
-
-// -V (F S + p cof F) for one group of lanes
-SN_INLINE void piola(const sn_cell_pass *pass, const cell_block *c, int i, wide V, wide P[9]) {
-    wide F[9], S[6];
-    load9(c->H, i, F);
-    for (int r = 0; r < 3; r++)
-        for (int s = 0; s < 3; s++) F[3 * r + s] = F[3 * r + s] + (real)pass->axes[3 * s + r];
-    for (int k = 0; k < 6; k++) S[k] = wide_load(c->T + k * SN_BLOCK + i);
-    for (int r = 0; r < 3; r++) {
-        const wide *f = F + 3 * r;
-        P[3 * r] = f[0] * S[0] + f[1] * S[3] + f[2] * S[5];
-        P[3 * r + 1] = f[0] * S[3] + f[1] * S[1] + f[2] * S[4];
-        P[3 * r + 2] = f[0] * S[5] + f[1] * S[4] + f[2] * S[2];
-    }
-    if (pass->volume_mode != SN_VOLUME_NONE) {
-        wide p = wide_load(c->T + 6 * SN_BLOCK + i);
-        for (int r = 0; r < 3; r++) {
-            int r1 = (r + 1) % 3, r2 = (r + 2) % 3;
-            for (int s = 0; s < 3; s++) {
-                int s1 = (s + 1) % 3, s2 = (s + 2) % 3;
-                wide cofactor = F[3 * r1 + s1] * F[3 * r2 + s2] - F[3 * r1 + s2] * F[3 * r2 + s1];
-                P[3 * r + s] = P[3 * r + s] + p * cofactor;
-            }
-        }
-    }
-    for (int k = 0; k < 9; k++) P[k] = -V * P[k];
-}
 
 SN_INLINE void find_forces(const sn_cell_pass *pass, size_t at, cell_block *c) {
     const real *gradient = (const real *)pass->gradient + 9 * at;
     const real *volume = (const real *)pass->volume + at;
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
-        wide P[9], g[9], first[3] = {wide_set(0), wide_set(0), wide_set(0)};
-        piola(pass, c, i, wide_load(volume + i), P);
-        load9(gradient, i, g);
-        for (int a = 0; a < 3; a++)
-            for (int r = 0; r < 3; r++) {
-                wide x =
-                    P[3 * r] * g[3 * a] + P[3 * r + 1] * g[3 * a + 1] + P[3 * r + 2] * g[3 * a + 2];
-                first[r] = first[r] - x;
-                wide_store(c->f + (3 * (a + 1) + r) * SN_BLOCK + i, x);
-            }
-        for (int r = 0; r < 3; r++) wide_store(c->f + r * SN_BLOCK + i, first[r]);
+        wide F[9], P[9], V = wide_load(volume + i);
+        deformation(pass, c->H, i, F);
+        law_stress(F, c->T, i, P);
+        if (pass->volume_mode != SN_VOLUME_NONE)
+            add_volume_stress(F, wide_load(c->T + 6 * SN_BLOCK + i), P);
+        for (int k = 0; k < 9; k++) P[k] = -V * P[k];
+        corner_forces(gradient, i, P, c->f);
     }
-}
-
-// forces of the corners of a block to the nodes of the tile
-SN_INLINE void add_forces(const real *f, const uint16_t *corner, real *force) {
-    for (int a = 0; a < 4; a++)
-        for (int i = 0; i < SN_BLOCK; i += 4) {
-            const real *from = f + 3 * a * SN_BLOCK + i;
-            quad q[4];
-            block_take(from, from + SN_BLOCK, from + 2 * SN_BLOCK, q);
-            tile_add(force, corner + a * SN_BLOCK + i, q);
-        }
 }
 
 void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
@@ -167,13 +30,10 @@ void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
         const size_t at = (size_t)block * SN_BLOCK;
         const uint16_t *corner = tile->corner + 4 * b * SN_BLOCK;
         block_ask_memory(&pass->memory, block - pass->first, components * SN_BLOCK);
-        displacement_gradient(pass, &nodes, corner, at, &c);
+        displacement_gradient(pass, &nodes, corner, at, nodal, &c);
         strain(pass, &c);
-#if SN_REAL_BITS == 64
-        sn_law_solid(pass->law, pass->value, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
-#else
-        sn_law_solid_f(pass->law, pass->value_f, pass->terms, SN_BLOCK, c.E, NULL, c.T, NULL);
-#endif
+        if (pass->upright > 0) add_upright(pass, &c);
+        evaluate_law(pass, &c);
         block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
         find_forces(pass, at, &c);
         add_forces(c.f, corner, tile->force);

@@ -139,6 +139,20 @@ SN_INLINE void pressed_load(const fan_block *c, int k, int i, const wide e[3], p
     cross(e, r->a, r->t);
 }
 
+// the same of the stress that turns a crushed cell round: see SN_UPRIGHT
+SN_INLINE wide upright_pressure(const fan_block *c, real modulus, int k, int next, int i,
+                                const wide e[3], const pressed_node *one, const pressed_node *two) {
+    const real sixth = (real)(1.0 / 6.0), tiny = (real)1e-30;
+    wide E[3], A[3], B[3], n[3];
+    load3(c->A, i, E);
+    load3(c->A + 3 * (k + 1) * WIDTH, i, A);
+    load3(c->A + 3 * (next + 1) * WIDTH, i, B);
+    cross(A, B, n);
+    wide rest = wide_max(dot(E, n), wide_set(tiny)); // what fills has no volume
+    cross(one->a, two->a, n);
+    return -sixth * modulus * wide_min(dot(e, n) / rest - (real)SN_UPRIGHT, wide_set(0));
+}
+
 // one cell: adds to the force on q, returns that on the ring
 SN_INLINE void push_cell(wide p, const pressed_node *one, const pressed_node *two, wide q[3],
                          wide on_one[3], wide on_two[3]) {
@@ -156,7 +170,7 @@ SN_INLINE void store3(real *to, int i, const wide x[3]) {
 }
 
 // forces on the members of the fans of one group of lanes
-SN_INLINE void push(fan_block *c, int ring, bool closed, int i) {
+SN_INLINE void push(fan_block *c, int ring, bool closed, real modulus, int i) {
     wide e[3], A[3], q[3], sum[3], carry[3], first[3], on_one[3], on_two[3];
     pressed_node one, two, start;
     load3(c->d, i, e);
@@ -169,7 +183,9 @@ SN_INLINE void push(fan_block *c, int ring, bool closed, int i) {
     one = start;
     for (int k = 0; k + 1 < ring; k++) {
         pressed_load(c, k + 1, i, e, &two);
-        push_cell(cell_pressure(c, k, k + 1, i), &one, &two, q, on_one, on_two);
+        wide p = cell_pressure(c, k, k + 1, i);
+        if (modulus > 0) p = p + upright_pressure(c, modulus, k, k + 1, i, e, &one, &two);
+        push_cell(p, &one, &two, q, on_one, on_two);
         for (int j = 0; j < 3; j++) {
             on_one[j] = carry[j] - on_one[j];
             carry[j] = on_two[j];
@@ -180,7 +196,9 @@ SN_INLINE void push(fan_block *c, int ring, bool closed, int i) {
         one = two;
     }
     if (closed) {
-        push_cell(cell_pressure(c, ring - 1, 0, i), &one, &start, q, on_one, on_two);
+        wide p = cell_pressure(c, ring - 1, 0, i);
+        if (modulus > 0) p = p + upright_pressure(c, modulus, ring - 1, 0, i, e, &one, &start);
+        push_cell(p, &one, &start, q, on_one, on_two);
         for (int j = 0; j < 3; j++) {
             first[j] = first[j] + on_two[j];
             carry[j] = carry[j] - on_one[j];
@@ -193,14 +211,15 @@ SN_INLINE void push(fan_block *c, int ring, bool closed, int i) {
     store3(c->f, i, sum);
 }
 
-SN_INLINE void push_blocks(const sn_tile *tile, const tile_nodes *nodes, int ring, bool closed) {
+SN_INLINE void push_blocks(const sn_tile *tile, const tile_nodes *nodes, int ring, bool closed,
+                           real modulus) {
     fan_block c;
     const int corners = 2 + ring;
     for (int b = 0; b < tile->blocks; b++) {
         const uint16_t *corner = tile->corner + b * corners * WIDTH;
         block_pressure(nodes, corner, WIDTH, c.p);
         block_spokes(nodes, corner, corners - 1, layout, c.d, c.A, c.p + WIDTH);
-        for (int i = 0; i < WIDTH; i += SN_LANES) push(&c, ring, closed, i);
+        for (int i = 0; i < WIDTH; i += SN_LANES) push(&c, ring, closed, modulus, i);
         for (int k = 0; k < corners; k++)
             for (int i = 0; i < WIDTH; i += 4) {
                 const real *from = c.f + 3 * k * WIDTH + i;
@@ -215,5 +234,5 @@ void SN_KERNEL(sn_press)(const sn_cell_pass *pass, const sn_tile *tile) {
     tile_nodes nodes;
     tile_load(tile, pass->u, pass->pressure, &nodes);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
-    push_blocks(tile, &nodes, tile->ring, tile->closed);
+    push_blocks(tile, &nodes, tile->ring, tile->closed, (real)pass->upright);
 }

@@ -1,0 +1,364 @@
+// States and runs as bytes, to go on from later with the same bits.
+// SPDX-License-Identifier: Apache-2.0
+//
+// Bytes are a head and then memory as it stands, piece after piece; one list of pieces serves
+// saving and loading. The head holds the format's version, the order of bytes, a fingerprint of the
+// net and a checksum of what follows, so that bytes of another net, another program or a damaged
+// file are refused. What a step only writes before it reads (sums of tiles, scratch of the
+// frequency search) is left out.
+#include <string.h>
+
+#include "springs/net.h"
+
+#define SNAPSHOT_VERSION 1u
+#define SNAPSHOT_ORDER 0x01020304u
+
+/// What stands before the pieces.
+typedef struct snapshot_head {
+    char magic[8];
+    uint32_t version, order;
+    uint64_t fingerprint, bytes, checksum;
+} snapshot_head;
+
+static const char state_magic[8] = "SNSTATE", run_magic[8] = "SNRUN";
+
+//---- fingerprints --------------------------------------------------------------------------------
+
+// Source: Fowler, Noll and Vo's hash FNV-1a of 64 bits, here of eight bytes at a time
+static uint64_t mix(uint64_t hash, const void *data, size_t bytes) {
+    const unsigned char *at = data;
+    for (; bytes > 0; at += 8) {
+        uint64_t word = 0;
+        size_t part = bytes < 8 ? bytes : 8;
+        memcpy(&word, at, part);
+        hash = (hash ^ word) * 1099511628211u;
+        hash ^= hash >> 29; // the product carries upwards only
+        bytes -= part;
+    }
+    return hash;
+}
+
+static uint64_t mix_history(uint64_t hash, const sn_history *h) {
+    if (!h) return mix(hash, "none", 4);
+    hash = mix(hash, h->time, (size_t)h->count * sizeof *h->time);
+    return mix(hash, h->value, (size_t)h->count * (size_t)h->channels * sizeof *h->value);
+}
+
+static uint64_t mix_region(uint64_t hash, const sn_net_region *g) {
+    const sn_exponentials *e = &g->memory;
+    const double numbers[] = {g->density,    g->shear, g->bulk,    g->exponent,
+                              g->stiffening, e->g_inf, e->viscous, (double)e->terms};
+    hash = mix(hash, g->tissue.law->name, strlen(g->tissue.law->name));
+    hash = mix(hash, g->tissue.value, sizeof g->tissue.value);
+    hash = mix(hash, numbers, sizeof numbers);
+    hash = mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
+    return mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+}
+
+static uint64_t mix_drive(uint64_t hash, const sn_net *net) {
+    for (int k = 0; k < net->fixed_count; k++) {
+        const sn_net_fixed *f = &net->fixed[k];
+        const double numbers[] = {f->node, f->direction, f->load, f->value};
+        hash = mix(hash, numbers, sizeof numbers);
+    }
+    for (int k = 0; k < net->factor_count; k++) hash = mix_history(hash, net->factor[k]);
+    for (int k = 0; k < net->load_count; k++) {
+        const sn_net_load *l = &net->load[k];
+        const size_t nodes = (size_t)l->count * (l->kind == SN_LOAD_PRESSURE ? 3 : 1);
+        hash = mix(mix_history(hash, l->factor), &l->pressure, sizeof l->pressure);
+        hash = mix(hash, l->node, nodes * sizeof *l->node);
+        if (l->force) hash = mix(hash, l->force, nodes * 3 * sizeof *l->force);
+    }
+    for (int k = 0; k < net->tool_count; k++) {
+        const sn_tool *t = &net->tool[k];
+        const double numbers[] = {(double)t->kind, t->radius,   t->axis[0], t->axis[1],
+                                  t->axis[2],      t->at[0],    t->at[1],   t->at[2],
+                                  t->friction,     t->grasp[0], t->grasp[1]};
+        hash = mix(mix_history(mix_history(hash, t->path), t->turn), numbers, sizeof numbers);
+    }
+    for (int k = 0; k < net->probe_count; k++) {
+        const sn_net_probe *p = &net->probe[k];
+        hash = mix(hash, p->kind == SN_PROBE_POINT ? p->node : p->fixed,
+                   (p->kind == SN_PROBE_POINT ? 4 : (size_t)p->count) * sizeof(int));
+        if (p->kind == SN_PROBE_POINT) hash = mix(hash, p->weight, sizeof p->weight);
+    }
+    return hash;
+}
+
+uint64_t sn_net_fingerprint(const sn_net *net) {
+    const double numbers[] = {net->nodes,
+                              net->cells,
+                              net->springs,
+                              (double)net->rung,
+                              net->volume,
+                              net->volume_mode,
+                              (double)net->integrator,
+                              (double)net->precision,
+                              net->damping,
+                              net->until,
+                              net->output_every,
+                              net->asked_step,
+                              net->step,
+                              net->omega2,
+                              net->gravity[0],
+                              net->gravity[1],
+                              net->gravity[2],
+                              SN_BLOCK,
+                              (double)sizeof(sn_run_summary)};
+    const size_t slots = (size_t)net->cell_blocks * SN_BLOCK;
+    uint64_t hash = mix(14695981039346656037u, numbers, sizeof numbers);
+    hash = mix(hash, net->axes, sizeof net->axes);
+    hash = mix(hash, net->node_position, (size_t)net->nodes * 3 * sizeof(double));
+    hash = mix(hash, net->cell_node, slots * 4 * sizeof(int));
+    hash = mix(hash, net->data[SN_DOUBLE].volume, slots * sizeof(double));
+    for (int r = 0; r < net->region_count; r++) hash = mix_region(hash, &net->region[r]);
+    return mix_drive(hash, net);
+}
+
+//---- pieces --------------------------------------------------------------------------------------
+
+static size_t total(const sn_piece *piece, int count) {
+    size_t bytes = 0;
+    for (int k = 0; k < count; k++) bytes += piece[k].bytes;
+    return bytes;
+}
+
+#define PIECE(member)                                                                              \
+    { (void *)(uintptr_t)&s->member, sizeof s->member }
+
+// what of a state matters to its next steps and to what it hands out
+static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
+    const size_t real = s->precision == SN_SINGLE ? sizeof(float) : sizeof(double);
+    const size_t nodes = (size_t)net->nodes, tools = (size_t)net->tool_count;
+    const size_t loads = (size_t)net->factor_count;
+    const sn_piece all[] = {
+        {s->u, nodes * 4 * real},
+        {s->v, nodes * 4 * real},
+        {s->now.f, nodes * 4 * real},
+        {s->now.pressure, (size_t)net->point_blocks * SN_BLOCK * real},
+        {s->store, net->store_size * real},
+        {s->a_fixed, (size_t)net->fixed_count * sizeof *s->a_fixed},
+        {s->ext, nodes * 3 * sizeof *s->ext},
+        {s->contact, tools * (size_t)net->contact_count * sizeof *s->contact},
+        {s->tool_pose, tools * sizeof *s->tool_pose},
+        {s->tool_set, tools * sizeof *s->tool_set},
+        {s->tool_force, tools * sizeof *s->tool_force},
+        {s->tool_torque, tools * sizeof *s->tool_torque},
+        {s->mode, nodes * 3 * sizeof *s->mode},
+        {s->load_factor, loads * sizeof *s->load_factor},
+        {s->load_was, loads * sizeof *s->load_was},
+        {s->load_set, loads * sizeof *s->load_set},
+        {s->push, nodes * 3 * sizeof *s->push},
+        {s->pushed, nodes * sizeof *s->pushed},
+        {s->grip, nodes * sizeof *s->grip},
+        {s->gripped, nodes * sizeof *s->gripped},
+        {s->tool_phase, tools * sizeof *s->tool_phase},
+        {s->factors, (size_t)net->region_count * sizeof *s->factors},
+        PIECE(time),
+        PIECE(factors_step),
+        PIECE(last_step),
+        PIECE(omega2),
+        PIECE(seen_omega2),
+        PIECE(contact_omega2),
+        PIECE(steps),
+        PIECE(check_in),
+        PIECE(check_every),
+        PIECE(moved),
+        PIECE(check_way),
+        PIECE(warnings),
+        PIECE(broken),
+        PIECE(crushed),
+        PIECE(damped_energy),
+        PIECE(pushed_count),
+        PIECE(gripped_count),
+    };
+    const int count = (int)(sizeof all / sizeof *all);
+    SN_ASSERT(count <= SN_PIECES_MAX);
+    memcpy(piece, all, sizeof all);
+    return count;
+}
+
+static void write_pieces(const sn_piece *piece, int count, unsigned char *to) {
+    for (int k = 0; k < count; k++) {
+        if (piece[k].bytes > 0) memcpy(to, piece[k].data, piece[k].bytes);
+        to += piece[k].bytes;
+    }
+}
+
+static void read_pieces(const sn_piece *piece, int count, const unsigned char *from) {
+    for (int k = 0; k < count; k++) {
+        if (piece[k].bytes > 0) memcpy(piece[k].data, from, piece[k].bytes);
+        from += piece[k].bytes;
+    }
+}
+
+// fills in the head of bytes whose pieces are there
+static void seal(const sn_net *net, const char magic[8], size_t bytes, unsigned char *out) {
+    snapshot_head head = {.version = SNAPSHOT_VERSION,
+                          .order = SNAPSHOT_ORDER,
+                          .fingerprint = net->fingerprint,
+                          .bytes = bytes};
+    memcpy(head.magic, magic, sizeof head.magic);
+    head.checksum = mix(head.fingerprint, out + sizeof head, bytes);
+    memcpy(out, &head, sizeof head);
+}
+
+static sn_status check_head(const sn_net *net, const char magic[8], const char *what,
+                            const void *bytes, size_t size) {
+    snapshot_head head;
+    if (size < sizeof head || memcmp(bytes, magic, sizeof head.magic) != 0)
+        return sn_fail(SN_E_DATA, "%s: %zu bytes that are no state of the springs", what, size);
+    memcpy(&head, bytes, sizeof head);
+    if (head.version != SNAPSHOT_VERSION || head.order != SNAPSHOT_ORDER)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "%s: saved by another version (format %u, expected %u) or on a machine of "
+                       "another order of bytes; start anew",
+                       what, (unsigned)head.version, SNAPSHOT_VERSION);
+    if (head.fingerprint != net->fingerprint)
+        return sn_fail(SN_E_DEFINITION,
+                       "%s: saved from another net (fingerprint %016llx, this one has %016llx): "
+                       "mesh, tissues, loads, tools, times and settings must be the same",
+                       what, (unsigned long long)head.fingerprint,
+                       (unsigned long long)net->fingerprint);
+    if (head.bytes != size - sizeof head ||
+        head.checksum !=
+            mix(head.fingerprint, (const unsigned char *)bytes + sizeof head, size - sizeof head))
+        return sn_fail(SN_E_DATA, "%s: damaged: %zu bytes with a wrong length or checksum", what,
+                       size);
+    return SN_OK;
+}
+
+//---- states --------------------------------------------------------------------------------------
+
+size_t sn_state_size(const sn_net *net, const sn_state *s) {
+    sn_piece piece[SN_PIECES_MAX];
+    return sizeof(snapshot_head) + total(piece, state_pieces(net, s, piece));
+}
+
+void sn_state_save(const sn_net *net, const sn_state *s, void *bytes) {
+    sn_piece piece[SN_PIECES_MAX];
+    const int count = state_pieces(net, s, piece);
+    write_pieces(piece, count, (unsigned char *)bytes + sizeof(snapshot_head));
+    seal(net, state_magic, total(piece, count), bytes);
+}
+
+sn_status sn_state_load(const sn_net *net, sn_state *s, const void *bytes, size_t size) {
+    sn_piece piece[SN_PIECES_MAX];
+    const int count = state_pieces(net, s, piece);
+    SN_TRY(check_head(net, state_magic, "state", bytes, size));
+    if (size != sizeof(snapshot_head) + total(piece, count))
+        return sn_fail(SN_E_DATA, "state: %zu bytes, expected %zu", size,
+                       sizeof(snapshot_head) + total(piece, count));
+    read_pieces(piece, count, (const unsigned char *)bytes + sizeof(snapshot_head));
+    return SN_OK;
+}
+
+//---- runs ----------------------------------------------------------------------------------------
+
+/// Numbers of a run between two outputs.
+typedef struct run_numbers {
+    int rows, columns;
+    double elapsed, step_wall_max; ///< wall time
+    double internal_work, external_work, elastic_start, kinetic_start;
+    sn_run_summary summary;
+} run_numbers;
+
+// numbers, then the state, what the integrator keeps, and the columns of the history
+static sn_status list_pieces(const sn_run *run, const sn_state *s, const sn_piece *own, int count,
+                             run_numbers *numbers, sn_piece **piece, int *pieces) {
+    const int columns = run->history->series_count;
+    sn_piece *list = *piece = sn_alloc((size_t)(1 + SN_PIECES_MAX + count + columns), sizeof *list);
+    if (!list) return SN_E_MEMORY;
+    list[0] = (sn_piece){numbers, sizeof *numbers};
+    int at = 1 + state_pieces(run->net, s, list + 1);
+    for (int k = 0; k < count; k++) list[at++] = own[k];
+    for (int k = 0; k < columns; k++)
+        list[at++] = (sn_piece){run->history->series[k].value,
+                                (size_t)numbers->rows * sizeof *run->history->series[k].value};
+    *pieces = at;
+    return SN_OK;
+}
+
+sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int count) {
+    const sn_restart *c = run->restart;
+    if (!c || !c->save) return SN_OK;
+    run_numbers *numbers = sn_alloc(1, sizeof *numbers); // zeros between its members too
+    if (!numbers) return SN_E_MEMORY;
+    numbers->rows = run->history->rows;
+    numbers->columns = run->history->series_count;
+    numbers->elapsed = sn_clock() - run->started;
+    numbers->internal_work = run->internal_work;
+    numbers->external_work = run->external_work;
+    numbers->elastic_start = run->elastic_start;
+    numbers->kinetic_start = run->kinetic_start;
+    numbers->summary = *run->summary;
+    sn_piece *piece = NULL;
+    int pieces;
+    unsigned char *bytes = NULL;
+    sn_status status;
+    SN_TRY_GOTO(status, list_pieces(run, s, own, count, numbers, &piece, &pieces));
+    const size_t size = total(piece, pieces);
+    bytes = sn_alloc(sizeof(snapshot_head) + size, 1);
+    if (!bytes) {
+        status = SN_E_MEMORY;
+        goto fail;
+    }
+    write_pieces(piece, pieces, bytes + sizeof(snapshot_head));
+    seal(run->net, run_magic, size, bytes);
+    status = c->save(c->context, bytes, sizeof(snapshot_head) + size);
+fail:
+    sn_free(bytes);
+    sn_free(piece);
+    sn_free(numbers);
+    return status;
+}
+
+static void take_numbers(sn_run *run, const run_numbers *numbers) {
+    run->started -= numbers->elapsed;
+    run->internal_work = numbers->internal_work;
+    run->external_work = numbers->external_work;
+    run->elastic_start = numbers->elastic_start;
+    run->kinetic_start = numbers->kinetic_start;
+    *run->summary = numbers->summary;
+    run->summary->threads = run->net->threads; // may be another number: the bits are the same
+}
+
+// rows to be filled
+static sn_status add_rows(sn_run *run, int rows) {
+    memset(run->row, 0, (size_t)run->history->series_count * sizeof *run->row);
+    for (int k = run->history->rows; k < rows; k++)
+        SN_TRY(sn_record_append(run->history, run->row));
+    return SN_OK;
+}
+
+sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count) {
+    const sn_restart *c = run->restart;
+    const unsigned char *from = c->state;
+    SN_TRY(check_head(run->net, run_magic, "saved run", from, c->bytes));
+    from += sizeof(snapshot_head);
+    run_numbers *numbers = sn_alloc(1, sizeof *numbers);
+    if (!numbers) return SN_E_MEMORY;
+    sn_piece *piece = NULL;
+    int pieces;
+    sn_status status = SN_OK;
+    if (c->bytes >= sizeof(snapshot_head) + sizeof *numbers) memcpy(numbers, from, sizeof *numbers);
+    if (numbers->rows < 1 || numbers->columns != run->history->series_count ||
+        (size_t)numbers->rows > c->bytes / sizeof(double)) {
+        status = sn_fail(SN_E_DATA, "saved run: %d rows of %d columns, expected %d columns",
+                         numbers->rows, numbers->columns, run->history->series_count);
+        goto fail;
+    }
+    SN_TRY_GOTO(status, add_rows(run, numbers->rows));
+    SN_TRY_GOTO(status, list_pieces(run, s, own, count, numbers, &piece, &pieces));
+    if (c->bytes != sizeof(snapshot_head) + total(piece, pieces)) {
+        status = sn_fail(SN_E_DATA, "saved run: %zu bytes, expected %zu", c->bytes,
+                         sizeof(snapshot_head) + total(piece, pieces));
+        goto fail;
+    }
+    read_pieces(piece, pieces, from);
+    take_numbers(run, numbers);
+fail:
+    sn_free(piece);
+    sn_free(numbers);
+    return status;
+}

@@ -1,0 +1,65 @@
+// The inside of the tangent, for the files that assemble it.
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "springs/net.h"
+
+/// A sparse matrix of blocks by rows; columns rise within a row.
+typedef struct sn_sparsity {
+    int rows;
+    int *start;  ///< (rows + 1)
+    int *column; ///< (start[rows])
+} sn_sparsity;
+
+struct sn_tangent {
+    sn_sparsity cells;          // nodes by nodes
+    double *block;              // 3 x 3 blocks
+    sn_sparsity points;         // volume points by nodes
+    double *flux;               // b: 3 numbers an entry
+    double *stiffness;          // alpha K / V of each point
+    double *inverse;            // of the diagonal blocks
+    double *along;              // scratch of the points
+    double *r, *z, *p, *q;      // scratch of the solver
+    struct sn_cluster *cluster; // scratch of the smoothed edges
+};
+
+/// Place of an entry that is there.
+static inline int sn_sparsity_find(const sn_sparsity *p, int row, int column) {
+    int low = p->start[row], high = p->start[row + 1] - 1;
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (p->column[middle] < column)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/// rows of d(e)/d(u_a), e = (E_xx, E_yy, E_zz, 2 E_xy, 2 E_yz, 2 E_zx)
+static inline void sn_strain_rows(const double F[9], const double g[3], double B[6][3]) {
+    for (int c = 0; c < 3; c++) {
+        const double *f = F + 3 * c;
+        for (int k = 0; k < 3; k++) {
+            int l = (k + 1) % 3;
+            B[k][c] = f[k] * g[k];
+            B[3 + k][c] = f[k] * g[l] + f[l] * g[k];
+        }
+    }
+}
+
+/// Number `at` of the stress with memory, from its instantaneous value T.
+static inline double sn_tangent_stress(const sn_net_region *region, const sn_tangent_call *call,
+                                       double alpha, size_t first, size_t at, double T) {
+    if (region->branches == 0 || !call->factors) return T;
+    return alpha * T + call->history[first + at];
+}
+
+//---- smoothed edges (springs/tangent_edges.c) ----------------------------------------------------
+
+/// Scratch, and the pattern of nodes that share an edge's cells.
+sn_status sn_tangent_create_edges(const sn_net *net, sn_tangent *tangent);
+void sn_tangent_destroy_edges(sn_tangent *tangent);
+/// Adds the law, and without nodal volume the volume stress, at the edges of a region.
+void sn_tangent_add_edges(const sn_net *net, sn_tangent *tangent, const sn_net_region *region,
+                          double alpha, const sn_tangent_call *call);
