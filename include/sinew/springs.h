@@ -30,7 +30,8 @@ SN_API int sn_net_spring_count(const sn_net *net);
 SN_API int sn_net_cell_count(const sn_net *net);
 /// The exponentials in use, of the tissue of region 0.
 SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
-/// The explicit step, seconds: 0.9 of the stability limit at rest, or the case's own.
+/// The step, seconds: explicit 0.9 of the stability limit at rest, implicit as chosen, or the
+/// case's own.
 SN_API double sn_net_step(const sn_net *net);
 
 SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
@@ -47,7 +48,7 @@ typedef struct sn_step_info {
     int warnings; ///< counted so far: steps cut, states recovered
 } sn_step_info;
 
-/// Advances by at most dt seconds, one explicit step. Never allocates.
+/// Advances by at most dt seconds, one explicit or implicit step. Never allocates.
 SN_API sn_step_info sn_state_step(const sn_net *net, sn_state *state, double dt);
 /// Positions now, metres (node_count x 3), copied to the caller's array.
 SN_API void sn_state_positions(const sn_net *net, const sn_state *state, double *position);
@@ -58,9 +59,9 @@ SN_API void sn_state_tool_force(const sn_net *net, const sn_state *state, int to
 /// Runs a case to its end. Fields as in sn_continuum_run(), velocity [m/s] in addition; frames and
 /// rows at time 0, every output_every, and at the end. Reactions are what supports and prescribed
 /// motion give the body (mass times acceleration less all other forces there), tool forces what the
-/// tissue gives the tool. summary->elastic_J is W + U of the instantaneous law at the end,
-/// dissipated_J what damping took and, with memory, the work done on the tissue less elastic_J
-/// (below zero where slow loading let the memory relax).
+/// tissue gives the tool. summary->elastic_J is the energy of the equilibrium part of the law at
+/// the end, memory_J what the branches of the memory hold, dissipated_J what damping took and, with
+/// memory, the work done on the tissue less what it stored.
 /// @return SN_OK also where the run stopped early (summary->converged false, summary->reason).
 SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                                 sn_record *history);

@@ -1,4 +1,4 @@
-// The explicit run: steps, records, counts energy.
+// The run with inertia, explicit or implicit: steps, records, counts energy.
 // SPDX-License-Identifier: Apache-2.0
 #include <math.h>
 #include <stdio.h>
@@ -12,18 +12,6 @@ typedef struct ledger {
     double fixed; ///< kinetic energy of prescribed directions then
 } ledger;
 
-static sn_moment moment_of(const sn_state *s) {
-    return (sn_moment){.time = s->time,
-                       .precision = s->precision,
-                       .u = s->u,
-                       .v = s->v,
-                       .f = s->now.f,
-                       .store = s->store,
-                       .pressure = s->now.pressure,
-                       .a_fixed = s->a_fixed,
-                       .tool_force = s->tool_force};
-}
-
 static double fixed_kinetic(const sn_net *net, const sn_state *s) {
     double sum = 0;
     for (int k = 0; k < net->fixed_count; k++) {
@@ -35,29 +23,49 @@ static double fixed_kinetic(const sn_net *net, const sn_state *s) {
     return sum;
 }
 
-// kinetic energy at the time of u: free velocities are half a step behind
+// kinetic energy at the time of u: free velocities of the explicit step are half of it behind
 static double kinetic(const sn_net *net, const sn_state *s) {
+    const double behind = s->implicit ? 0.0 : 0.5 * s->last_step;
     double sum = 0;
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
             double v = sn_real_at(s->precision, s->v, at);
             if (!(net->fixed_bits[i] >> d & 1))
-                v += 0.5 * s->last_step * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
+                v += behind * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
             sum += 0.5 * net->mass[i] * v * v;
         }
     return sum;
 }
 
+static sn_moment moment_of(const sn_net *net, const sn_state *s) {
+    return (sn_moment){.time = s->time,
+                       .precision = s->precision,
+                       .u = s->u,
+                       .v = s->v,
+                       .f = s->now.f,
+                       .store = s->store,
+                       .pressure = s->now.pressure,
+                       .a_fixed = s->a_fixed,
+                       .tool_force = s->tool_force,
+                       .kinetic = s->broken ? 0.0 : kinetic(net, s),
+                       .damped = s->damped_energy};
+}
+
+// way of number `at` in the last step
+static double way_of(const sn_state *s, size_t at) {
+    if (s->implicit) return ((const double *)s->u)[at] - sn_implicit_before(s->implicit)[at];
+    return s->last_step * sn_real_at(s->precision, s->v, at);
+}
+
 // work of one step: all forces over the way of all nodes, by the trapezoidal rule
 static void count_work(sn_run *run, const sn_state *s, ledger *l) {
     const sn_net *net = run->net;
-    const double h = s->last_step;
     double all = 0, ext = 0, on_fixed = 0;
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
-            double way = h * sn_real_at(s->precision, s->v, at);
+            double way = way_of(s, at);
             double work = 0.5 * way *
                           (sn_real_at(s->precision, s->f_before, at) +
                            sn_real_at(s->precision, s->now.f, at));
@@ -68,7 +76,7 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
     for (int k = 0; k < net->loaded_count; k++)
         for (int d = 0; d < 3; d++) {
             int at = 3 * net->loaded[k] + d;
-            double way = h * sn_real_at(s->precision, s->v, 4 * (size_t)net->loaded[k] + (size_t)d);
+            double way = way_of(s, 4 * (size_t)net->loaded[k] + (size_t)d);
             ext += 0.5 * way * (l->ext[at] + s->ext[at]);
             l->ext[at] = s->ext[at];
         }
@@ -80,22 +88,29 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
 }
 
 static sn_status record(sn_run *run, const sn_state *s) {
-    const sn_moment moment = moment_of(s);
+    const sn_moment moment = moment_of(run->net, s);
     return sn_run_record(run, &moment);
 }
 
-static double elastic(sn_run *run, const sn_state *s) {
-    const sn_moment moment = moment_of(s);
-    sn_fields_fill(run->net, run->fields, &moment);
-    return sn_fields_elastic(run->net, run->fields);
-}
-
-static void stop(sn_run *run, double time) {
+static void stop(sn_run *run, const sn_state *s) {
+    const double time = s->time;
     run->summary->converged = false;
+    if (s->implicit) {
+        snprintf(run->summary->reason, sizeof run->summary->reason, "%s",
+                 sn_implicit_reason(s->implicit));
+        return;
+    }
     snprintf(run->summary->reason, sizeof run->summary->reason,
              "the motion became infinite at %.6g s of %.6g s, after %ld steps of about %.3g s: the "
              "loads may be too sudden, or the tissue too soft for them",
              time, run->net->until, run->summary->steps, time / (double)run->summary->steps);
+}
+
+// of the next step
+static double pace(const sn_net *net, const sn_state *s, double left) {
+    if (s->implicit) return left / fmax(1.0, ceil(left / net->step - 1e-6));
+    // the last two steps before a landing share what is left
+    return left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
 }
 
 // steps from now to `next`
@@ -104,9 +119,7 @@ static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     sn_run_summary *summary = run->summary;
     while (s->time < next - tiny && !s->broken) {
         double left = next - s->time, start = sn_clock();
-        // the last two steps before a landing share what is left
-        double step = left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
-        sn_step_info info = sn_state_step(run->net, s, step);
+        sn_step_info info = sn_state_step(run->net, s, pace(run->net, s, left));
         sn_run_wall(run, sn_clock() - start);
         summary->steps++;
         if (s->broken) return;
@@ -117,16 +130,34 @@ static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     s->time = next; // rounding of sums
 }
 
-sn_status sn_run_explicit(sn_run *run) {
+static sn_status start(sn_run *run, sn_state **state, ledger *l) {
+    const size_t n = (size_t)run->net->nodes * 3;
+    l->ext = sn_alloc(n, sizeof *l->ext);
+    if (!l->ext) return SN_E_MEMORY;
+    SN_TRY(sn_state_create(run->net, state));
+    memcpy(l->ext, (*state)->ext, n * sizeof *l->ext);
+    const sn_moment moment = moment_of(run->net, *state);
+    run->stored_start = sn_run_store(run, &moment);
+    return record(run, *state);
+}
+
+static void finish(sn_run *run, const sn_state *s) {
+    const sn_moment moment = moment_of(run->net, s);
+    sn_run_summary *summary = run->summary;
+    if (s->broken) stop(run, s);
+    summary->simulated_s = s->time;
+    summary->kinetic_J = moment.kinetic;
+    summary->dissipated_J = moment.damped;
+    sn_run_store(run, &moment);
+    if (s->implicit)
+        sn_implicit_counts(s->implicit, &summary->newton_iterations, &summary->cutbacks);
+}
+
+sn_status sn_run_motion(sn_run *run) {
     const sn_net *net = run->net;
     sn_state *s = NULL;
-    ledger l = {.ext = sn_alloc((size_t)net->nodes * 3, sizeof(double))};
-    sn_status status = l.ext ? sn_state_create(net, &s) : SN_E_MEMORY;
-    if (status == SN_OK) status = record(run, s);
-    if (status == SN_OK) {
-        memcpy(l.ext, s->ext, (size_t)net->nodes * 3 * sizeof *l.ext);
-        run->elastic_start = elastic(run, s);
-    }
+    ledger l = {0};
+    sn_status status = start(run, &s, &l);
     long output = 1;
     while (status == SN_OK && !s->broken && s->time < net->until) {
         double due = sn_run_output_time(net, output);
@@ -136,13 +167,7 @@ sn_status sn_run_explicit(sn_run *run) {
         status = record(run, s);
         output++;
     }
-    if (status == SN_OK) {
-        if (s->broken) stop(run, s->time);
-        run->summary->simulated_s = s->time;
-        run->summary->kinetic_J = s->broken ? 0.0 : kinetic(net, s);
-        run->summary->elastic_J = elastic(run, s);
-        run->summary->dissipated_J = s->damped_energy;
-    }
+    if (status == SN_OK) finish(run, s);
     sn_state_destroy(s);
     sn_free(l.ext);
     return status;
