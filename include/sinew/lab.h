@@ -106,8 +106,14 @@ SN_API sn_status sn_lab_test(const sn_tissue *tissue, const sn_protocol *protoco
 //---- reduction -----------------------------------------------------------------------------------
 
 /// What was pulled: one axis with free sides; two axes of a sheet with a free thickness; one face
-/// slid along the first axis over the second (simple shear).
-typedef enum sn_curve_kind { SN_CURVE_UNIAXIAL, SN_CURVE_BIAXIAL, SN_CURVE_SHEAR } sn_curve_kind;
+/// slid along the first axis over the second (simple shear); or one axis with free sides, shaken a
+/// little about a held stretch, as moduli over frequency.
+typedef enum sn_curve_kind {
+    SN_CURVE_UNIAXIAL,
+    SN_CURVE_BIAXIAL,
+    SN_CURVE_SHEAR,
+    SN_CURVE_DYNAMIC
+} sn_curve_kind;
 
 /// A curve brought to time, stretch and nominal stress from whatever columns it has (force over
 /// area, extension over gauge_length, strain, true stress, …). Arrays owned.
@@ -119,20 +125,27 @@ typedef struct sn_curve {
     double *stretch;               ///< [1], of the first axis; shear: the amount of shear [1]
     double *stress;                ///< nominal, Pa, along the first axis; shear: the shear stress
     double *stretch_2, *stress_2;  ///< of the second axis; NULL unless biaxial
+    double *frequency;             ///< Hz, rising; NULL unless dynamic, which has none of the above
+    double *storage, *loss;        ///< d(nominal stress)/d(stretch), Pa; NULL unless dynamic
+    double mean_stretch;           ///< of a dynamic curve: the stretch that it is shaken about
     int discarded;                 ///< rows left out, why in `remarks`
     char remarks[SN_TEXT_MAX * 2]; ///< what was done to the data, in words
 } sn_curve;
 
-/// The columns say the kind: names with _1 and _2 are biaxial, shear_strain is a shear test. Shear
-/// stress is nominal, which in simple shear is the true one as well.
-/// Rows at the time of the row before are left out; a few rows that came late by a few places are
-/// put back (at most 1 % of the rows, by at most 5 places), and gaps are said.
+/// The columns say the kind: names with _1 and _2 are biaxial, shear_strain is a shear test,
+/// storage_modulus and loss_modulus over frequency are dynamic, about the stretch of the remark
+/// mean_stretch (1 without). Shear stress is nominal, which in simple shear is the true one as
+/// well. Rows at the time of the row before are left out; a few rows that came late by a few places
+/// are put back (at most 1 % of the rows, by at most 5 places), and gaps are said.
 /// @return SN_OK, SN_E_DATA (a column or a quantity is missing, columns of two kinds of test, times
 /// go backwards, too few rows).
 SN_API sn_status sn_curve_from_record(const sn_record *record, sn_curve *curve);
 SN_API void sn_curve_release(sn_curve *curve);
-/// "uniaxial", "biaxial" or "shear".
+/// "uniaxial", "biaxial", "shear" or "dynamic".
 SN_API const char *sn_curve_kind_name(sn_curve_kind kind);
+/// What was measured, Pa: stress (which 0) and stress_2 (1), of a dynamic curve storage and loss.
+/// NULL: there is no second.
+SN_API const double *sn_curve_measured(const sn_curve *curve, int which);
 /// Refuses a curve of another kind; `what` wants it ("a tensile test"). @return SN_OK,
 /// SN_E_UNSUPPORTED.
 SN_API sn_status sn_curve_expect(const sn_curve *curve, sn_curve_kind kind, const char *what);
@@ -366,13 +379,14 @@ typedef struct sn_fit_param {
 
 typedef struct sn_fit_curve {
     int count;
-    double *predicted;   ///< nominal stress, Pa, owned               (count)
-    double *predicted_2; ///< along the second axis, owned; NULL unless biaxial (count)
-    double rmse;         ///< Pa, of both axes
-    double peak;         ///< largest |measured stress|, Pa, of both axes
+    double *predicted; ///< nominal stress, or storage modulus, Pa, owned (count)
+    /// along the second axis, or loss modulus, Pa, owned; NULL unless biaxial or dynamic (count)
+    double *predicted_2;
+    double rmse; ///< Pa, of both axes or moduli
+    double peak; ///< largest |measured stress| or modulus, Pa, of both
     double r_squared;
     int worst;       ///< row of the largest residual
-    bool second;     ///< that residual is of the second axis
+    bool second;     ///< that residual is of the second axis, or of the loss modulus
     int first, used; ///< rows of the window, which all of the above but what is predicted speak of
     double weight;   ///< factor of its squares
     double durbin_watson; ///< of its residuals in the order of the rows: 2 where they are white
@@ -385,7 +399,8 @@ typedef struct sn_fit_bootstrap {
     char reason[SN_TEXT_MAX]; ///< why some are left out, or why there are no intervals
 } sn_fit_bootstrap;
 
-/// A fit: all stresses are residuals in Pa, R2 = 1 - SSE/SST over all points of all curves.
+/// A fit: all stresses and moduli are residuals in Pa, R2 = 1 - SSE/SST over all points of all
+/// curves.
 typedef struct sn_fit_result {
     sn_tissue tissue;
     int param_count;
@@ -400,7 +415,7 @@ typedef struct sn_fit_result {
     bool converged;
     char reason[SN_TEXT_MAX]; ///< of the end of the search
     int points;
-    double r_squared, rmse, nrmse, aicc; ///< nrmse: rmse over the largest measured stress
+    double r_squared, rmse, nrmse, aicc; ///< nrmse: rmse over the largest that was measured
     int curve_count;
     sn_fit_curve curve[SN_FIT_CURVES_MAX];
     sn_fit_bootstrap bootstrap;
@@ -409,7 +424,9 @@ typedef struct sn_fit_result {
 
 /// Fits law and memory together, through the recorded stretch history of every curve. A bulk
 /// modulus is no parameter of a fit: it is infinite unless fixed. Solids and membranes take biaxial
-/// and shear curves, residuals of both directions together; solids uniaxial ones as well. A shear
+/// and shear curves, residuals of both directions together; solids uniaxial ones as well. Dynamic
+/// curves go with every law that the dynamic test of sn_lab_test() takes, and have two residuals a
+/// frequency; `from` and `to` do not touch them. A shear
 /// constant of a Fung law that no curve sees is tied to the others as in an isotropic law. Fung
 /// laws stay convex. Same input, same bits.
 /// @return SN_OK, SN_E_DATA (no time, fewer points than parameters, constant stretch),

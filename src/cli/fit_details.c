@@ -238,6 +238,7 @@ static void slope_plot(sn_report *report, const fit_outcome *o) {
     int n = 0;
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *m = &o->data->curve[k];
+        if (m->kind != SN_CURVE_UNIAXIAL) continue;
         const double *stress[] = {m->stress, o->fit->curve[k].predicted};
         for (int j = 0; j < 2; j++) {
             int count = slopes(m, stress[j], x[n], y[n]);

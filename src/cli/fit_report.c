@@ -8,25 +8,38 @@
 
 // band and tolerance at which the spectrum's compression is reported: the span of the records
 #define COMPRESSION_TOLERANCE 1e-3
+#define TWO_PI 6.28318530717958648
 
+static bool is_sweep(const sn_curve *curve) {
+    return curve->kind == SN_CURVE_DYNAMIC;
+}
+
+static int count_sweeps(const fit_outcome *o) {
+    int n = 0;
+    for (int k = 0; k < o->data->count; k++) n += is_sweep(&o->data->curve[k]);
+    return n;
+}
+
+// every curve that is no sweep has a time
 static bool timed(const fit_outcome *o) {
     for (int k = 0; k < o->data->count; k++)
-        if (!o->data->curve[k].time) return false;
+        if (!o->data->curve[k].time && !is_sweep(&o->data->curve[k])) return false;
     return true;
 }
 
-// where a row stands: its time, or its number
+// where a row stands: its time, its frequency, or its number
 static const char *place_of(const sn_curve *curve, int row) {
     static char text[4][32];
     static int turn;
     if (curve->time) return cli_show(curve->time[row], "s");
+    if (is_sweep(curve)) return cli_show(curve->frequency[row], "Hz");
     turn = (turn + 1) % 4;
     snprintf(text[turn], sizeof text[turn], "row %d", row + 1);
     return text[turn];
 }
 
 static double worst_measured(const sn_curve *m, const sn_fit_curve *c) {
-    return c->second ? m->stress_2[c->worst] : m->stress[c->worst];
+    return sn_curve_measured(m, c->second)[c->worst];
 }
 
 static double worst_fitted(const sn_fit_curve *c) {
@@ -39,11 +52,17 @@ static json_t *convex_json(const sn_tissue *tissue) {
     return json_boolean(sn_law_check(tissue->law, tissue->value, tissue->terms) == SN_OK);
 }
 
+// times that the curves speak of; of a sweep those of 1/omega
 static void time_span(const fit_outcome *o, double *shortest, double *longest) {
     *shortest = INFINITY;
     *longest = 0;
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *c = &o->data->curve[k];
+        if (is_sweep(c)) {
+            *shortest = fmin(*shortest, 1 / (TWO_PI * c->frequency[c->count - 1]));
+            *longest = fmax(*longest, 1 / (TWO_PI * c->frequency[0]));
+            continue;
+        }
         for (int i = 1; i < c->count; i++) *shortest = fmin(*shortest, c->time[i] - c->time[i - 1]);
         *longest = fmax(*longest, c->time[c->count - 1] - c->time[0]);
     }
@@ -121,6 +140,10 @@ static json_t *curves_json(const fit_outcome *o) {
         cli_put_number(row, "durbin_watson", c->durbin_watson);
         cli_put_integer(worst, "row", c->worst + 1);
         cli_put_number(worst, "time_s", m->time ? m->time[c->worst] : (double)NAN);
+        if (is_sweep(m)) {
+            cli_put_number(worst, "frequency_Hz", m->frequency[c->worst]);
+            cli_put_text(worst, "modulus", c->second ? "loss" : "storage");
+        }
         if (m->kind == SN_CURVE_BIAXIAL) cli_put_integer(worst, "axis", c->second ? 2 : 1);
         cli_put_number(worst, "measured_Pa", worst_measured(m, c));
         cli_put_number(worst, "fitted_Pa", worst_fitted(c));
@@ -287,7 +310,7 @@ static void fit_plot(sn_report *report, const fit_outcome *o, sn_curve_kind kind
         const sn_fit_curve *c = predicted ? &o->held_out[k].prediction : &o->fit->curve[k];
         const double *x = over_time ? m->time : m->stretch;
         bool two = over_time && m->kind == SN_CURVE_BIAXIAL;
-        if (!over_time && m->kind != kind) continue;
+        if (over_time ? is_sweep(m) : m->kind != kind) continue;
         snprintf(label[n / 2], sizeof *label, "%s%s", cli_basename(o->data->path[k]),
                  two ? ", axis 1" : "");
         line[n] = (sn_line){label[n / 2], SN_POINTS, n / 2 % 8, m->count, x, m->stress};
@@ -341,11 +364,36 @@ static void biaxial_plots(sn_report *report, const fit_outcome *o, bool predicte
     }
 }
 
+// storage and loss modulus of every sweep, a plot each
+static void sweep_plots(sn_report *report, const fit_outcome *o, bool predicted) {
+    for (int k = 0; k < o->data->count; k++) {
+        const sn_curve *m = &o->data->curve[k];
+        const sn_fit_curve *c = predicted ? &o->held_out[k].prediction : &o->fit->curve[k];
+        if (!is_sweep(m)) continue;
+        char title[SN_TEXT_MAX + 64];
+        snprintf(title, sizeof title, "%s, moduli about stretch %g%s",
+                 cli_basename(o->data->path[k]), m->mean_stretch,
+                 predicted ? ", predicted from the others" : "");
+        const sn_line line[] = {{"storage", SN_POINTS, 0, m->count, m->frequency, m->storage},
+                                {NULL, SN_LINE, 0, m->count, m->frequency, c->predicted},
+                                {"loss", SN_POINTS, 1, m->count, m->frequency, m->loss},
+                                {NULL, SN_LINE, 1, m->count, m->frequency, c->predicted_2}};
+        sn_report_plot(report, &(sn_plot){.title = title,
+                                          .x_label = "frequency [Hz]",
+                                          .y_label = "dynamic modulus [kPa]",
+                                          .y_scale = 1e-3,
+                                          .caption = "Points: measured. Lines: model.",
+                                          .log_x = true,
+                                          .line_count = 4,
+                                          .line = line});
+    }
+}
+
 // residuals of the fitted rows of every curve, of the second axis after the first
 static void residual_plot(sn_report *report, const fit_outcome *o) {
     sn_line line[2 * SN_FIT_CURVES_MAX];
     char label[2 * SN_FIT_CURVES_MAX][SN_TEXT_MAX];
-    bool over_time = timed(o);
+    bool over_time = timed(o) && !count_sweeps(o);
     size_t points = (size_t)o->fit->points;
     double *residual = sn_alloc(2 * points, sizeof *residual), *at = residual + points;
     if (!residual) return; // sn_report_write reports the shortage that follows
@@ -353,16 +401,19 @@ static void residual_plot(sn_report *report, const fit_outcome *o) {
     for (int k = 0; k < o->data->count; k++) {
         const sn_curve *m = &o->data->curve[k];
         const sn_fit_curve *c = &o->fit->curve[k];
-        for (int axis = 0; axis < (m->kind == SN_CURVE_BIAXIAL ? 2 : 1); axis++) {
+        for (int axis = 0; axis < 2 && sn_curve_measured(m, axis); axis++) {
+            const double *measured = sn_curve_measured(m, axis);
+            const double *fitted = axis ? c->predicted_2 : c->predicted;
             snprintf(label[n], sizeof *label, "%s%s", cli_basename(o->data->path[k]),
-                     axis ? ", axis 2" : "");
+                     !is_sweep(m) ? (axis ? ", axis 2" : "")
+                     : axis       ? ", loss"
+                                  : ", storage");
             line[n] =
                 (sn_line){label[n], SN_LINE_POINTS, n % 8, c->used, at + used, residual + used};
             n++;
             for (int i = c->first; i < c->first + c->used; i++, used++) {
                 at[used] = over_time ? m->time[i] : i + 1;
-                residual[used] =
-                    axis ? m->stress_2[i] - c->predicted_2[i] : m->stress[i] - c->predicted[i];
+                residual[used] = measured[i] - fitted[i];
             }
         }
     }
@@ -426,11 +477,13 @@ sn_status fit_report(const char *path, const fit_outcome *o) {
     fit_plot(report, o, SN_CURVE_UNIAXIAL, false, false);
     biaxial_plots(report, o, false);
     fit_plot(report, o, SN_CURVE_SHEAR, false, false);
+    sweep_plots(report, o, false);
     residual_plot(report, o);
     if (o->has_held_out) {
         if (clock) fit_plot(report, o, SN_CURVE_UNIAXIAL, true, true);
         if (!clock) fit_plot(report, o, SN_CURVE_UNIAXIAL, false, true);
         biaxial_plots(report, o, true);
+        sweep_plots(report, o, true);
     }
     memory_plot(report, o);
     sn_exponentials e;

@@ -55,7 +55,7 @@ static const struct {
 } quantity_notes[] = {
     {"area", "m2"},          {"area_1", "m2"},        {"area_2", "m2"},   {"gauge_length", "m"},
     {"gauge_length_1", "m"}, {"gauge_length_2", "m"}, {"thickness", "m"}, {"width", "m"},
-    {"width_1", "m"},        {"width_2", "m"},        {"diameter", "m"},
+    {"width_1", "m"},        {"width_2", "m"},        {"diameter", "m"},  {"mean_stretch", "1"},
 };
 enum { QUANTITY_COUNT = sizeof quantity_notes / sizeof quantity_notes[0] };
 

@@ -87,6 +87,7 @@ mv analyze-sine-1.json analyze-dynamic-2.json
 # one direction does not determine two constants
 "$SINEW" fit tensile.csv --elastic mooney-rivlin --json >fit-2.json
 "$SINEW" fit biaxial.csv --elastic neo-hookean --json >fit-3.json
+"$SINEW" fit dynamic.csv --elastic linear --json >fit-4.json
 "$SINEW" run c.yaml --engine springs --json >run-1.json
 "$SINEW" run c.yaml --engine continuum --json >run-2.json
 "$SINEW" run c.yaml --engine continuum --refine 2 --json >run-3.json

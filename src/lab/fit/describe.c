@@ -4,7 +4,8 @@
 // A constant is called identifiable unless one of these holds; the first that does is the reason.
 //  1. It is a relaxation time that the test cannot show: under a third of the fastest ramp (the
 //     ramp hides it), under the shortest sampling interval of a ramp, or over the longest record;
-//     and its interval is at least moderately wide, see 5.
+//     a sweep shows times from 1/omega of its fastest to that of its slowest oscillation, so what
+//     lies between is not hidden; and its interval is at least moderately wide, see 5.
 //  2. It stands at a bound of the search, or a Fung law at the limit of its convexity.
 //  3. Its 95 % interval is open: it reaches a bound of the search.
 //  4. Its interval is wide: ends more than a factor of 10 apart where the scale is the logarithm,
@@ -14,7 +15,8 @@
 //  6. Its interval is not narrow (ends 1.25 times apart, or a quarter of the value) and it is tied
 //     by a correlation beyond 0.98 to a constant whose interval is open: the bounds of the search
 //     cut its interval, not the data.
-// Where all curves have one loading ratio, that takes the place of the reason of 2 to 6.
+// Where all curves have one loading ratio, or are sweeps about one stretch, that takes the place of
+// the reason of 2 to 6.
 // A correlation alone is no reason: B and C of an exponential law are tied in every test, and
 // narrow intervals of both say that the data tell them apart.
 #include <math.h>
@@ -56,13 +58,22 @@ static void from_profile(const sn_fit_constant *c, const double interval[2], dou
 static bool because_of_time(const sn_problem *problem, const sn_fit_constant *c, sn_fit_param *p) {
     // a narrow interval shows that the data do see it
     if (!c->time || !wider(c, p, moderate_factor, moderate_part)) return false;
-    if (p->value < problem->sampling)
+    double fastest = problem->fastest, slowest = problem->slowest; // of sweeps
+    if (p->value < fmin(problem->sampling, fastest) && fastest <= problem->sampling)
+        snprintf(p->reason, sizeof p->reason,
+                 "shorter than 1/omega of the fastest oscillation, %.3g s", fastest);
+    else if (p->value >= fastest && p->value <= slowest)
+        return false;
+    else if (isfinite(problem->sampling) && p->value < problem->sampling)
         snprintf(p->reason, sizeof p->reason,
                  "shorter than the shortest sampling interval of a ramp, %.3g s",
                  problem->sampling);
-    else if (p->value < hidden * problem->ramp)
+    else if (isfinite(problem->ramp) && p->value < hidden * problem->ramp)
         snprintf(p->reason, sizeof p->reason,
                  "hidden by the ramp: under a third of the fastest ramp, %.3g s", problem->ramp);
+    else if (p->value > fmax(problem->record, slowest) && slowest > problem->record)
+        snprintf(p->reason, sizeof p->reason,
+                 "longer than 1/omega of the slowest oscillation, %.3g s", slowest);
     else if (p->value > problem->record)
         snprintf(p->reason, sizeof p->reason, "longer than the longest record, %.3g s",
                  problem->record);
@@ -207,6 +218,25 @@ static void because_of_ratio(const sn_problem *problem, sn_fit_result *result) {
     }
 }
 
+// The same where all curves are sweeps about one stretch: of the law they know one slope.
+static void because_of_one_stretch(const sn_problem *problem, sn_fit_result *result) {
+    const sn_curve *curve = problem->def->curve;
+    int elastic = 0; // constants that are searched
+    for (int k = 0; k < problem->def->curve_count; ++k)
+        if (curve[k].kind != SN_CURVE_DYNAMIC || curve[k].mean_stretch != curve[0].mean_stretch)
+            return;
+    for (int j = 0; j < problem->free_count; ++j)
+        elastic += !problem->constant[problem->free[j]].in_memory;
+    for (int j = 0; j < problem->free_count && elastic > 1; ++j) {
+        sn_fit_param *p = &result->param[problem->free[j]];
+        if (p->identifiable || problem->constant[problem->free[j]].in_memory) continue;
+        snprintf(p->reason, sizeof p->reason,
+                 "every sweep is about the stretch %g: what they know of the law is its slope "
+                 "there; add sweeps about other stretches, or a pull",
+                 curve[0].mean_stretch);
+    }
+}
+
 static void describe_constants(const sn_problem *problem, sn_fit_result *result) {
     result->param_count = problem->count;
     for (int k = 0; k < problem->count; ++k) {
@@ -277,6 +307,7 @@ sn_status sn_describe(sn_problem *problem, sn_found *best, bool last, sn_fit_res
     }
     because_of_open_partners(problem, &spread, result);
     because_of_ratio(problem, result);
+    because_of_one_stretch(problem, result);
     sn_describe_determined(problem, &spread, result);
     return SN_OK;
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "lab/fit/statistics.h"
+#include "lab/protocol/protocol.h"
 
 enum { RESTARTS = 4 }; // profiles that met a better point
 
@@ -21,14 +22,14 @@ sn_fit_def sn_fit_def_default(void) {
 // fills all but what is predicted from it, over the rows of the window
 static void judge_curve(const sn_curve *curve, sn_fit_curve *out) {
     double mean = 0.0, sse = 0.0, sst = 0.0, largest = -1.0, steps = 0.0;
-    int end = out->first + out->used, axes = curve->kind == SN_CURVE_BIAXIAL ? 2 : 1;
+    int end = out->first + out->used, axes = sn_curve_measured(curve, 1) ? 2 : 1;
     double n = (double)axes * out->used;
     for (int axis = 0; axis < axes; ++axis) {
-        const double *measured = axis ? curve->stress_2 : curve->stress;
+        const double *measured = sn_curve_measured(curve, axis);
         for (int i = out->first; i < end; ++i) mean += measured[i] / n;
     }
     for (int axis = 0; axis < axes; ++axis) {
-        const double *measured = axis ? curve->stress_2 : curve->stress;
+        const double *measured = sn_curve_measured(curve, axis);
         const double *predicted = axis ? out->predicted_2 : out->predicted;
         double last = 0.0;
         for (int i = out->first; i < end; ++i) {
@@ -62,7 +63,7 @@ static sn_status copy(int n, const double *from, double **to) {
 static sn_status take_prediction(const sn_curve *curve, const double *stress, sn_fit_curve *out) {
     out->count = curve->count;
     SN_TRY(copy(curve->count, stress, &out->predicted));
-    if (curve->kind == SN_CURVE_BIAXIAL)
+    if (sn_curve_measured(curve, 1))
         SN_TRY(copy(curve->count, stress + curve->count, &out->predicted_2));
     judge_curve(curve, out);
     return SN_OK;
@@ -264,13 +265,20 @@ static sn_status predict_in_plane(const sn_tissue *tissue, const sn_curve *curve
     return status;
 }
 
+static sn_status predict_dynamic(const sn_tissue *tissue, const sn_curve *curve, double *moduli) {
+    sn_status status = sn_dynamic_moduli(tissue, curve->mean_stretch, curve->count,
+                                         curve->frequency, moduli, moduli + curve->count);
+    return status == SN_OK ? SN_OK : sn_fail_within(status, "%s", curve->name);
+}
+
 sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve, sn_fit_curve *prediction) {
     SN_ASSERT(tissue && curve && prediction);
     *prediction = (sn_fit_curve){.used = curve->count, .weight = 1.0};
     sn_curve timed = *curve; // without a memory time does not matter: row numbers stand for it
     double *rows = NULL, *stress = NULL;
     SN_TRY(sn_tissue_check(tissue));
-    if (!curve->time && tissue->memory.law->param_count > 0)
+    bool dynamic = curve->kind == SN_CURVE_DYNAMIC;
+    if (!curve->time && !dynamic && tissue->memory.law->param_count > 0)
         return sn_fail(SN_E_DATA, "%s: no time column: a prediction with memory %s needs one",
                        curve->name, tissue->memory.law->name);
     sn_status status = SN_E_MEMORY;
@@ -279,8 +287,10 @@ sn_status sn_fit_predict(const sn_tissue *tissue, const sn_curve *curve, sn_fit_
     if (!rows || !stress) goto fail;
     for (int i = 0; i < curve->count; ++i) rows[i] = i;
     if (!timed.time) timed.time = rows;
-    SN_TRY_GOTO(status, (curve->kind == SN_CURVE_UNIAXIAL ? predict_uniaxial : predict_in_plane)(
-                            tissue, &timed, stress));
+    SN_TRY_GOTO(status,
+                (dynamic                            ? predict_dynamic
+                 : curve->kind == SN_CURVE_UNIAXIAL ? predict_uniaxial
+                                                    : predict_in_plane)(tissue, &timed, stress));
     SN_TRY_GOTO(status, take_prediction(curve, stress, prediction));
 fail:
     if (status != SN_OK) {

@@ -1,4 +1,4 @@
-// Set-up of a fit from its definition, and its residuals.
+// Set-up of a fit from its definition.
 // SPDX-License-Identifier: Apache-2.0
 #include "lab/fit/problem.h"
 
@@ -10,7 +10,8 @@
 
 static const double exponent_max = 40.0; // largest exponent that a bound of a pure number allows
 static const double form_max = 20.0;     // the same of one term of Fung's quadratic form
-static const double beyond = 10.0;       // how residuals grow outside convexity
+static const double shaken = 0.05;       // least strain that a sweep stands for in the bounds
+static const double two_pi = 6.28318530717958647693;
 
 double sn_sum_squares(int n, const double *x) {
     double sum = 0.0;
@@ -28,7 +29,7 @@ double sn_problem_natural(const sn_fit_constant *constant, double scaled) {
 }
 
 int sn_problem_rows(const sn_curve *curve) {
-    return curve->kind == SN_CURVE_BIAXIAL ? 2 * curve->count : curve->count;
+    return sn_curve_measured(curve, 1) ? 2 * curve->count : curve->count;
 }
 
 //---- constants and bounds ------------------------------------------------------------------------
@@ -52,7 +53,7 @@ static double form_strain(const sn_problem *p, int index, bool *positive) {
 // Bounds of a constant of a Fung form: no term beyond an exponent, no linear term beyond twice the
 // largest stress; normal constants and shears positive.
 static void set_form_bounds(const sn_problem *p, double strain, bool positive, sn_fit_constant *c) {
-    double high = c->stress ? 2.0 * p->peak / sqrt(strain) : form_max / strain;
+    double high = c->stress ? 2.0 * p->stress / sqrt(strain) : form_max / strain;
     c->high = fmin(c->param->max, high);
     c->low = fmax(c->param->min, positive ? 1e-6 * c->high : -c->high);
 }
@@ -67,15 +68,15 @@ static void set_bounds(const sn_problem *p, sn_fit_constant *c) {
         set_form_bounds(p, strain, positive, c);
         return;
     }
-    double low = t->min, high = t->max, modulus = p->peak / p->strain;
+    double low = t->min, high = t->max, modulus = fmax(p->stress / p->strain, p->modulus);
     if (c->stress) {
         low = fmax(low, t->log_scale || t->min >= 0.0 ? 1e-6 * modulus : -1e3 * modulus);
         // from 0 on a straight scale, as fibres have it: no room for a far end to drown the near
         // one
         high = fmin(high, (t->min == 0.0 && !t->log_scale ? 20.0 : 1e3) * modulus);
     } else if (c->time) {
-        low = fmax(low, p->sampling / 100.0);
-        high = fmin(high, 100.0 * p->record);
+        low = fmax(low, fmin(p->sampling, p->fastest) / 100.0);
+        high = fmin(high, 100.0 * fmax(p->record, p->slowest));
     } else if (p->tissue.law->kind != SN_LAW_MEMBRANE || c->in_memory) {
         // the cubic terms of a membrane keep the bounds of their table
         // pulled two ways, laws stiffen by invariants, which are of second order
@@ -244,13 +245,21 @@ static double green(double stretch) {
     return 0.5 * (stretch - 1.0) * (stretch + 1.0);
 }
 
+// strains of a pull to stretches x and y of the first two axes
+static void take_pull(sn_problem *p, double x, double y) {
+    double E[] = {green(x), green(y), green(1.0 / (x * y))};
+    for (int j = 0; j < 3; ++j) p->green[j] = fmax(p->green[j], fabs(E[j]));
+    p->strain = fmax(p->strain, fabs(x - 1.0));
+}
+
 // the largest strains and stresses
 static void take_extremes(sn_problem *p, const sn_curve *c) {
-    double E[3];
     for (int i = 0; i < c->count; ++i) {
         double x = c->stretch[i];
-        p->peak = fmax(p->peak, fabs(c->stress[i]));
-        if (c->stress_2) p->peak = fmax(p->peak, fabs(c->stress_2[i]));
+        double stress = fabs(c->stress[i]);
+        if (c->stress_2) stress = fmax(stress, fabs(c->stress_2[i]));
+        p->stress = fmax(p->stress, stress);
+        p->peak = fmax(p->peak, stress);
         if (c->kind == SN_CURVE_SHEAR) {
             p->strain = fmax(p->strain, fabs(x));
             p->shear = fmax(p->shear, 0.5 * fabs(x));
@@ -258,14 +267,25 @@ static void take_extremes(sn_problem *p, const sn_curve *c) {
             continue;
         }
         double y = c->stretch_2 ? c->stretch_2[i] : 1.0 / sqrt(x);
-        E[0] = green(x);
-        E[1] = green(y);
-        E[2] = green(1.0 / (x * y));
-        for (int j = 0; j < 3; ++j) p->green[j] = fmax(p->green[j], fabs(E[j]));
-        p->strain = fmax(p->strain, fabs(x - 1.0));
+        take_pull(p, x, y);
         if (c->stretch_2) p->biaxial = true;
         if (c->stretch_2) p->strain = fmax(p->strain, fabs(y - 1.0));
     }
+}
+
+// a sweep: what bounds need of it
+static void add_sweep(sn_problem *p, const sn_curve *c) {
+    double strain = fmax(fabs(c->mean_stretch - 1.0), shaken);
+    double x = c->mean_stretch < 1.0 - shaken ? c->mean_stretch : 1.0 + strain, modulus = 0.0;
+    take_pull(p, x, 1.0 / sqrt(x));
+    for (int i = 0; i < c->count; ++i) {
+        modulus = fmax(modulus, fabs(c->storage[i]));
+        p->peak = fmax(p->peak, fmax(modulus, fabs(c->loss[i])));
+        p->fastest = fmin(p->fastest, 1.0 / (two_pi * c->frequency[i]));
+        p->slowest = fmax(p->slowest, 1.0 / (two_pi * c->frequency[i]));
+    }
+    p->modulus = fmax(p->modulus, modulus);
+    p->stress = fmax(p->stress, modulus * strain);
 }
 
 static sn_status add_curve(sn_problem *p, int k, const double *time) {
@@ -297,6 +317,10 @@ static sn_status add_curves(sn_problem *p) {
     sn_status status = SN_OK;
     for (int k = 0; k < def->curve_count && status == SN_OK; ++k) {
         const sn_curve *curve = &def->curve[k];
+        if (curve->kind == SN_CURVE_DYNAMIC) {
+            add_sweep(p, curve);
+            continue;
+        }
         if (curve->time) {
             status = add_curve(p, k, curve->time);
             continue;
@@ -315,13 +339,14 @@ static sn_status add_curves(sn_problem *p) {
 
 static sn_status set_data(sn_problem *p) {
     const sn_fit_def *def = p->def;
-    p->sampling = p->ramp = (double)INFINITY;
+    p->sampling = p->ramp = p->fastest = (double)INFINITY;
     SN_TRY(add_curves(p));
     p->slopes = true;
     for (int k = 0; k < def->curve_count; ++k) p->slopes = p->slopes && p->path[k];
-    if (!(p->peak > 0.0))
-        return sn_fail(SN_E_DATA, "%s: the stress is 0 in every row: nothing to fit",
-                       def->curve[0].name);
+    if (!(p->stress > 0.0))
+        return sn_fail(SN_E_DATA, "%s: the %s is 0 in every row: nothing to fit",
+                       def->curve[0].name,
+                       def->curve[0].kind == SN_CURVE_DYNAMIC ? "storage modulus" : "stress");
     for (int k = 0; k < def->curve_count; ++k) p->points += sn_problem_rows(&def->curve[k]);
     p->measured = sn_alloc(3 * (size_t)p->points, sizeof *p->measured);
     if (!p->measured) return SN_E_MEMORY;
@@ -336,7 +361,7 @@ static sn_status set_data(sn_problem *p) {
         for (int i = 0; i < sn_problem_rows(curve); ++i, ++at) {
             int row = i % curve->count;
             bool in = sn_problem_in_window(def, curve, row);
-            p->measured[at] = i < curve->count ? curve->stress[row] : curve->stress_2[row];
+            p->measured[at] = sn_curve_measured(curve, i / curve->count)[row];
             p->weight[at] = in ? sqrt(weight) : 0.0;
             p->norm += in ? weight * p->measured[at] * p->measured[at] : 0.0;
             p->used += in;
@@ -361,10 +386,14 @@ static sn_status check_definition(const sn_fit_def *def) {
                            "uniaxial or a solid law, or biaxial and shear curves",
                            def->law->name, def->curve[k].name);
     }
-    for (int k = 0; k < def->curve_count; ++k)
-        if (def->curve[k].count < 3)
-            return sn_fail(SN_E_DATA, "%s: %d rows: expected at least 3", def->curve[k].name,
-                           def->curve[k].count);
+    for (int k = 0; k < def->curve_count; ++k) {
+        const sn_curve *c = &def->curve[k];
+        if (c->count < 3)
+            return sn_fail(SN_E_DATA, "%s: %d rows: expected at least 3", c->name, c->count);
+        if (c->kind == SN_CURVE_DYNAMIC && !(c->mean_stretch > 0.0))
+            return sn_fail(SN_E_DATA, "%s: mean stretch %g: expected a number above 0", c->name,
+                           c->mean_stretch);
+    }
     for (int k = 0; k < def->law->param_count && !biaxial; ++k)
         if (def->law->params[k].length > 1)
             return sn_fail(
@@ -380,6 +409,8 @@ static sn_status check_curves(const sn_problem *p) {
     for (int k = 0; k < p->def->curve_count; ++k) {
         const sn_curve *c = &p->def->curve[k];
         bool shear = c->kind == SN_CURVE_SHEAR;
+        if (c->kind == SN_CURVE_DYNAMIC)
+            continue; // it moves about a stretch that all memories have
         if (c->kind != SN_CURVE_UNIAXIAL) SN_TRY(sn_in_plane_check(&p->tissue, c));
         double rest = shear ? 0.0 : 1.0;
         bool second = c->stretch_2 && c->stretch_2[0] != 1.0;
@@ -423,87 +454,4 @@ void sn_problem_destroy(sn_problem *problem) {
     }
     sn_free(problem->measured);
     sn_free(problem);
-}
-
-//---- residuals -----------------------------------------------------------------------------------
-
-void sn_problem_set(sn_problem *problem, const double *x) {
-    for (int j = 0; j < problem->free_count; ++j) {
-        const sn_fit_constant *c = &problem->constant[problem->free[j]];
-        double *values = c->in_memory ? problem->tissue.memory.value : problem->tissue.value;
-        values[c->index] = sn_problem_natural(c, x[j]);
-    }
-    problem->convexity = sn_fung_convex(problem->tissue.law, problem->held, problem->tissue.value);
-    for (int k = 0; k < problem->count; ++k) {
-        const sn_fit_constant *c = &problem->constant[k];
-        if (c->tied)
-            sn_fung_tie(problem->tissue.law, c->index, c->param->max, problem->tissue.value);
-    }
-}
-
-void sn_problem_settle(sn_problem *problem, double *x) {
-    sn_problem_set(problem, x);
-    for (int j = 0; j < problem->free_count; ++j) {
-        const sn_fit_constant *c = &problem->constant[problem->free[j]];
-        const double *values = c->in_memory ? problem->tissue.memory.value : problem->tissue.value;
-        x[j] = sn_problem_scaled(c, values[c->index]);
-    }
-}
-
-// model stresses of the tissue as it stands
-static sn_status model_stress(sn_problem *p) {
-    sn_exponentials e;
-    sn_pull pull = SN_PULL_UNIAXIAL;
-    SN_TRY(sn_law_check(p->tissue.law, p->tissue.value, p->tissue.terms));
-    SN_TRY(sn_memory_expand(&p->tissue.memory, &e));
-    if (p->tissue.law->kind != SN_LAW_MEMBRANE) SN_TRY(sn_pull_choose(&p->tissue, &pull));
-    for (int k = 0, at = 0; k < p->def->curve_count; ++k) {
-        if (p->plane[k])
-            SN_TRY(sn_in_plane_stress(p->plane[k], &p->tissue, &e, p->model + at));
-        else
-            SN_TRY(
-                sn_path_stress(p->path[k], &p->tissue, pull, &e, SN_PROBLEM_LEVEL, p->model + at));
-        at += sn_problem_rows(&p->def->curve[k]);
-    }
-    return SN_OK;
-}
-
-bool sn_problem_residuals(sn_problem *problem, const double *x, double *residual) {
-    problem->evaluations++;
-    sn_problem_set(problem, x);
-    bool good = model_stress(problem) == SN_OK;
-    double away = 1.0 + beyond * (1.0 - problem->convexity);
-    for (int i = 0; i < problem->points && good; ++i) {
-        residual[i] = away * problem->weight[i] * (problem->model[i] - problem->measured[i]);
-        good = fabs(residual[i]) < 1e150; // squares must not overflow; false for NaN
-    }
-    if (good) return true;
-    double wall = 1e3 * sqrt(problem->norm / problem->points);
-    for (int i = 0; i < problem->points; ++i) residual[i] = wall;
-    return false;
-}
-
-double sn_problem_scaled_sum(sn_problem *problem, double *x, double *residual) {
-    int n = problem->points;
-    sn_problem_settle(problem, x);
-    if (!sn_problem_residuals(problem, x, residual) || !problem->scalable)
-        return sn_sum_squares(n, residual);
-    double cross = 0.0, square = 0.0;
-    for (int i = 0; i < n; ++i) {
-        double w = problem->weight[i] * problem->weight[i];
-        cross += w * problem->model[i] * problem->measured[i];
-        square += w * problem->model[i] * problem->model[i];
-    }
-    double factor = square > 0.0 ? cross / square : 0.0;
-    if (!(factor > 0.0)) return sn_sum_squares(n, residual);
-    for (int j = 0; j < problem->free_count; ++j) { // all or none: within the bounds?
-        const sn_fit_constant *c = &problem->constant[problem->free[j]];
-        double value = factor * sn_problem_natural(c, x[j]);
-        if (c->stress && (value < c->low || value > c->high)) return sn_sum_squares(n, residual);
-    }
-    for (int j = 0; j < problem->free_count; ++j) {
-        const sn_fit_constant *c = &problem->constant[problem->free[j]];
-        if (c->stress) x[j] = sn_problem_scaled(c, factor * sn_problem_natural(c, x[j]));
-    }
-    return fmax(0.0, problem->norm - factor * cross);
 }

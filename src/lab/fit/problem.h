@@ -32,14 +32,16 @@ typedef struct sn_problem {
     int free_count;
     int free[SN_FIT_PARAMS_MAX]; ///< constants that are searched
     bool scalable;               ///< stress is proportional to the free constants that are stresses
-    int points;                  ///< residuals of all curves, two a row where biaxial
+    int points;                  ///< residuals of all curves, two a row where biaxial or dynamic
     int used;                    ///< of them within the window; the others have weight 0
     sn_path *path[SN_FIT_CURVES_MAX];      ///< of uniaxial curves, else NULL
-    sn_in_plane *plane[SN_FIT_CURVES_MAX]; ///< of the others, else NULL
+    sn_in_plane *plane[SN_FIT_CURVES_MAX]; ///< of biaxial and shear curves, else NULL
     bool slopes; ///< every curve has sn_path_slopes(); else the residuals take differences
     double *measured, *weight, *model; ///< Pa, factor of a residual, Pa     (points)
     double norm;                       ///< weighted sum of squares of the measurements
-    double peak;                       ///< largest |measured stress|
+    double peak;                       ///< largest |measured stress| or |modulus|
+    double stress;                     ///< largest |stress|; of a sweep: what its strain would give
+    double modulus;                    ///< largest |storage modulus|; 0 without a sweep
     double strain;                     ///< largest |stretch - 1|, or shear
     double green[3], shear;            ///< largest |E11|, |E22|, |E33|; largest |E12|
     bool biaxial;                      ///< some curve is
@@ -48,6 +50,7 @@ typedef struct sn_problem {
     double sampling;                   ///< shortest sampling interval while the stretch moves, s
     double ramp;                       ///< shortest first ramp, s
     double record;                     ///< longest record, s
+    double fastest, slowest; ///< 1/(2 pi f) of sweeps, least and largest, s; or INFINITY, 0
     int evaluations;
 } sn_problem;
 
@@ -58,7 +61,7 @@ void sn_problem_destroy(sn_problem *problem); // NULL is allowed
 double sn_problem_scaled(const sn_fit_constant *constant, double value);
 double sn_problem_natural(const sn_fit_constant *constant, double scaled);
 /// Residuals of a curve: its rows, or twice that where it is biaxial (the first axis, then the
-/// second).
+/// second) or dynamic (storage, then loss modulus).
 int sn_problem_rows(const sn_curve *curve);
 /// Puts a search point into the tissue, tied constants with it. Where it is not convex the cross
 /// constants of a Fung law are shrunk until it is.

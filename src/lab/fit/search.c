@@ -246,24 +246,23 @@ static sn_status refine(cube *c, sn_found *best) {
 static sn_status thin_curve(const sn_curve *curve, int step, sn_curve *out) {
     size_t most = (size_t)(curve->count / step + 2);
     *out = *curve;
+    const double *const from[] = {curve->time,      curve->stretch,  curve->stress,
+                                  curve->stretch_2, curve->stress_2, curve->frequency,
+                                  curve->storage,   curve->loss};
+    double **const to[] = {&out->time,     &out->stretch,   &out->stress,  &out->stretch_2,
+                           &out->stress_2, &out->frequency, &out->storage, &out->loss};
+    enum { COLUMNS = sizeof from / sizeof *from };
+    bool whole = true;
+    for (int k = 0; k < COLUMNS; ++k) {
+        *to[k] = from[k] ? sn_alloc(most, sizeof **to[k]) : NULL;
+        whole = whole && (!from[k] || *to[k]);
+    }
     out->count = 0;
-    out->time = curve->time ? sn_alloc(most, sizeof *out->time) : NULL;
-    out->stretch = sn_alloc(most, sizeof *out->stretch);
-    out->stress = sn_alloc(most, sizeof *out->stress);
-    out->stretch_2 = curve->stretch_2 ? sn_alloc(most, sizeof *out->stretch_2) : NULL;
-    out->stress_2 = curve->stress_2 ? sn_alloc(most, sizeof *out->stress_2) : NULL;
-    if ((curve->time && !out->time) || !out->stretch || !out->stress ||
-        (curve->stretch_2 && !(out->stretch_2 && out->stress_2)))
-        return SN_E_MEMORY;
+    if (!whole) return SN_E_MEMORY;
     for (int i = 0; i < curve->count; ++i) {
         if (i % step != 0 && i != curve->count - 1) continue;
-        if (curve->time) out->time[out->count] = curve->time[i];
-        out->stretch[out->count] = curve->stretch[i];
-        out->stress[out->count] = curve->stress[i];
-        if (curve->stretch_2) {
-            out->stretch_2[out->count] = curve->stretch_2[i];
-            out->stress_2[out->count] = curve->stress_2[i];
-        }
+        for (int k = 0; k < COLUMNS; ++k)
+            if (from[k]) (*to[k])[out->count] = from[k][i];
         out->count++;
     }
     return SN_OK;

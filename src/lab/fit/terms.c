@@ -58,7 +58,8 @@ static double value_near(const sn_problem *p, const sn_fit_constant *c, const sn
     if (weight) return 0.9 * fresh;
     double part = (place + 0.5) / PLACES, sign = place % 2 ? -1.0 : 1.0;
     if (c->time) {
-        double low = p->sampling, high = fmax(2.0 * low, p->record);
+        double low = fmin(p->sampling, p->fastest);
+        double high = fmax(2.0 * low, fmax(p->record, p->slowest));
         return low * pow(high / low, part);
     }
     return sign * (c->stress ? fresh * fabs(own[0]) : exponent_least * pow(exponent_span, part));

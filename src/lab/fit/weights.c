@@ -19,8 +19,8 @@ static double peak_of(const sn_fit_def *def, int k) {
     double peak = 0.0;
     for (int i = 0; i < curve->count; ++i) {
         if (!sn_problem_in_window(def, curve, i)) continue;
-        peak = fmax(peak, fabs(curve->stress[i]));
-        if (curve->kind == SN_CURVE_BIAXIAL) peak = fmax(peak, fabs(curve->stress_2[i]));
+        for (int axis = 0; axis < 2 && sn_curve_measured(curve, axis); ++axis)
+            peak = fmax(peak, fabs(sn_curve_measured(curve, axis)[i]));
     }
     return peak;
 }

@@ -21,5 +21,12 @@ void sn_protocol_hold_times(int points, double ramp, double hold, double *time);
 sn_status sn_test_hysteresis(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
 sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
 sn_status sn_test_creep(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);
+/// Moduli of a small oscillation about a stretch held for ever, d(nominal stress)/d(stretch), Pa,
+/// of one axis pulled with free sides. A smooth function of the tissue's constants.
+/// @param frequency  Hz, above 0                                                (n)
+/// @param storage, loss  the real and the imaginary part                        (n)
+/// @return SN_OK, SN_E_UNSUPPORTED (law), SN_E_RANGE (overflow), SN_E_SOLVER (no free sides).
+sn_status sn_dynamic_moduli(const sn_tissue *tissue, double stretch, int n, const double *frequency,
+                            double *storage, double *loss);
 /// Biaxial and shear.
 sn_status sn_test_plane(const sn_tissue *tissue, const sn_protocol *p, sn_record *record);

@@ -21,6 +21,7 @@
 // memory is branched, the parts of S_ii come each with their G* and Goo, and the volume with its.
 #include <complex.h>
 #include <math.h>
+#include <stdio.h>
 
 #include "lab/protocol/path.h"
 #include "lab/protocol/protocol.h"
@@ -259,27 +260,44 @@ static double complex solid_modulus(const tangent *t, const response *distortion
     return A[0][0];
 }
 
-sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
+sn_status sn_dynamic_moduli(const sn_tissue *tissue, double stretch, int n, const double *frequency,
+                            double *storage, double *loss) {
     tangent t;
-    double *frequency;
-    SN_TRY(sn_protocol_sweep(p, &frequency));
-    sn_status status;
-    SN_TRY_GOTO(status, sn_tissue_check(tissue));
-    SN_TRY_GOTO(status, tangent_at(tissue, p->stretch, &t));
-    SN_TRY_GOTO(status, sn_record_add_series(record, "frequency", "Hz"));
-    SN_TRY_GOTO(status, sn_record_add_series(record, "storage_modulus", "Pa"));
-    SN_TRY_GOTO(status, sn_record_add_series(record, "loss_modulus", "Pa"));
-    for (int i = 0; i < p->points; ++i) {
+    SN_TRY(tangent_at(tissue, stretch, &t));
+    for (int i = 0; i < n; ++i) {
         response g[2] = {response_at(&tissue->memory, frequency[i])}; // of all that is no solid
         double complex modulus = g[0].moving * t.moving + t.held;
         for (int k = 0; k < t.parts; ++k) g[k] = response_at(&t.part[k].memory, frequency[i]);
         if (t.solid)
             modulus = solid_modulus(
                 &t, g, response_at(sn_tissue_memory(tissue, SN_PART_VOLUMETRIC), frequency[i]));
-        double row[] = {frequency[i], creal(modulus), cimag(modulus)};
-        SN_TRY_GOTO(status, sn_record_append(record, row));
+        storage[i] = creal(modulus);
+        loss[i] = cimag(modulus);
     }
+    return SN_OK;
+}
+
+sn_status sn_test_dynamic(const sn_tissue *tissue, const sn_protocol *p, sn_record *record) {
+    double *frequency, *storage = NULL;
+    char text[SN_NAME_MAX];
+    SN_TRY(sn_protocol_sweep(p, &frequency));
+    size_t n = (size_t)p->points;
+    sn_status status = SN_E_MEMORY;
+    storage = sn_alloc(2 * n, sizeof *storage);
+    if (!storage) goto fail;
+    double *loss = storage + n;
+    SN_TRY_GOTO(status, sn_tissue_check(tissue));
+    SN_TRY_GOTO(status, sn_dynamic_moduli(tissue, p->stretch, p->points, frequency, storage, loss));
+    SN_TRY_GOTO(status, sn_record_add_series(record, "frequency", "Hz"));
+    SN_TRY_GOTO(status, sn_record_add_series(record, "storage_modulus", "Pa"));
+    SN_TRY_GOTO(status, sn_record_add_series(record, "loss_modulus", "Pa"));
+    snprintf(text, sizeof text, "%.15g", p->stretch);
+    SN_TRY_GOTO(status, sn_record_add_note(record, "mean_stretch", text, p->stretch));
+    for (int i = 0; i < p->points; ++i)
+        SN_TRY_GOTO(status,
+                    sn_record_append(record, (double[]){frequency[i], storage[i], loss[i]}));
 fail:
+    sn_free(storage);
     sn_free(frequency);
     return status;
 }

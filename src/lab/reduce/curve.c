@@ -4,6 +4,7 @@
 // along each axis of a biaxial test as well, where the face of an axis shrinks by its stretch.
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "lab/reduce/clean.h"
@@ -145,13 +146,25 @@ static sn_status find_kind(const sn_record *record, sn_curve_kind *kind) {
     if (axis) snprintf(one, sizeof one, "%s", axis);
     bool shear =
         sn_record_find(record, "shear_strain") >= 0 || sn_record_find(record, "shear_stress") >= 0;
-    *kind = shear ? SN_CURVE_SHEAR : *two ? SN_CURVE_BIAXIAL : SN_CURVE_UNIAXIAL;
-    if ((*one != 0) + (*two != 0) + shear < 2) return SN_OK;
+    bool dynamic = sn_record_find(record, "storage_modulus") >= 0 ||
+                   sn_record_find(record, "loss_modulus") >= 0;
+    *kind = dynamic ? SN_CURVE_DYNAMIC
+            : shear ? SN_CURVE_SHEAR
+            : *two  ? SN_CURVE_BIAXIAL
+                    : SN_CURVE_UNIAXIAL;
+    const char *found[4];
+    int kinds = 0;
+    if (*one) found[kinds++] = one;
+    if (*two) found[kinds++] = two;
+    if (shear) found[kinds++] = "shear_strain";
+    if (dynamic) found[kinds++] = "storage_modulus";
+    if (kinds < 2) return SN_OK;
     return sn_fail(SN_E_DATA,
                    "%s: columns of two kinds of test, %s and %s: expected one of uniaxial "
-                   "(stretch, stress, ...), biaxial (stretch_1, stretch_2, ...) or shear "
-                   "(shear_strain, shear_stress): leave the others out",
-                   record->name, *one ? one : two, shear ? "shear_strain" : two);
+                   "(stretch, stress, ...), biaxial (stretch_1, stretch_2, ...), shear "
+                   "(shear_strain, shear_stress) or dynamic (frequency, storage_modulus, "
+                   "loss_modulus): leave the others out",
+                   record->name, found[0], found[1]);
 }
 
 static sn_status allocate(sn_curve *curve, int rows, bool timed) {
@@ -206,11 +219,75 @@ static sn_status take_row(const sn_record *record, int i, const row *r, sn_curve
     return SN_OK;
 }
 
+//---- moduli over frequency -----------------------------------------------------------------------
+
+typedef struct modulus_row {
+    double number[3]; // frequency, storage and loss modulus
+    int row;          // of the record: rows of one frequency keep their order
+} modulus_row;
+
+static int by_frequency(const void *a, const void *b) {
+    const modulus_row *x = a, *y = b;
+    int order = (x->number[0] > y->number[0]) - (x->number[0] < y->number[0]);
+    return order ? order : x->row - y->row;
+}
+
+static sn_status read_moduli(const sn_record *record, modulus_row *moduli) {
+    static const char *const names[] = {"frequency", "storage_modulus", "loss_modulus"};
+    for (int k = 0; k < 3; ++k) {
+        const double *column = sn_record_values(record, names[k]);
+        if (!column)
+            return sn_fail(SN_E_DATA,
+                           "%s: no column %s: a dynamic curve has frequency, storage_modulus and "
+                           "loss_modulus",
+                           record->name, names[k]);
+        for (int i = 0; i < record->rows; ++i) {
+            if (!isfinite(column[i]) || (k == 0 && !(column[i] > 0.0)))
+                return sn_fail(SN_E_DATA, "%s: row %d: %s is %g, expected a number%s", record->name,
+                               i + 1, names[k], column[i], k == 0 ? " above 0" : "");
+            moduli[i].number[k] = column[i];
+            moduli[i].row = i;
+        }
+    }
+    return SN_OK;
+}
+
+// rows in the order of the frequency
+static sn_status fill_dynamic(const sn_record *record, sn_curve *curve) {
+    size_t n = (size_t)record->rows;
+    const sn_note *note = sn_record_note(record, "mean_stretch");
+    curve->mean_stretch = note ? note->value : 1.0;
+    if (!isfinite(curve->mean_stretch) || !(curve->mean_stretch > 0.0))
+        return sn_fail(SN_E_DATA, "%s: # mean_stretch: %s: expected a number above 0", record->name,
+                       note->text);
+    if (!note) remark(curve, "no remark mean_stretch: taken as 1");
+    modulus_row *moduli = sn_alloc(n + 1, sizeof *moduli);
+    sn_status status = SN_E_MEMORY;
+    curve->frequency = sn_alloc(n, sizeof *curve->frequency);
+    curve->storage = sn_alloc(n, sizeof *curve->storage);
+    curve->loss = sn_alloc(n, sizeof *curve->loss);
+    if (!moduli || !curve->frequency || !curve->storage || !curve->loss) goto fail;
+    SN_TRY_GOTO(status, read_moduli(record, moduli));
+    qsort(moduli, n, sizeof *moduli, by_frequency);
+    for (size_t i = 0; i < n; ++i) {
+        curve->frequency[i] = moduli[i].number[0];
+        curve->storage[i] = moduli[i].number[1];
+        curve->loss[i] = moduli[i].number[2];
+    }
+    curve->count = record->rows;
+fail:
+    sn_free(moduli);
+    return status;
+}
+
+//---- all kinds -----------------------------------------------------------------------------------
+
 static sn_status fill(const sn_record *record, sn_curve *curve) {
     static const source shear_strain = {"shear_strain", NULL, as_it_is, NULL};
     static const source shear_stress = {"shear_stress", NULL, as_it_is, NULL};
     static const char *const suffixes[] = {"_1", "_2"};
     SN_TRY(find_kind(record, &curve->kind));
+    if (curve->kind == SN_CURVE_DYNAMIC) return fill_dynamic(record, curve);
     const double *time = sn_record_values(record, "time");
     bool two = curve->kind == SN_CURVE_BIAXIAL, shear = curve->kind == SN_CURVE_SHEAR;
     wanted length[2], load[2];
@@ -276,13 +353,22 @@ void sn_curve_release(sn_curve *curve) {
     sn_free(curve->stress);
     sn_free(curve->stretch_2);
     sn_free(curve->stress_2);
+    sn_free(curve->frequency);
+    sn_free(curve->storage);
+    sn_free(curve->loss);
     *curve = (sn_curve){0};
 }
 
 const char *sn_curve_kind_name(sn_curve_kind kind) {
-    static const char *const names[] = {"uniaxial", "biaxial", "shear"};
-    SN_ASSERT(kind <= SN_CURVE_SHEAR);
+    static const char *const names[] = {"uniaxial", "biaxial", "shear", "dynamic"};
+    SN_ASSERT(kind <= SN_CURVE_DYNAMIC);
     return names[kind];
+}
+
+const double *sn_curve_measured(const sn_curve *curve, int which) {
+    if (curve->kind == SN_CURVE_DYNAMIC) return which ? curve->loss : curve->storage;
+    if (which == 0) return curve->stress;
+    return curve->kind == SN_CURVE_BIAXIAL ? curve->stress_2 : NULL;
 }
 
 sn_status sn_curve_expect(const sn_curve *curve, sn_curve_kind kind, const char *what) {

@@ -207,6 +207,7 @@ static sn_status find_parts(const sn_curve *c, double threshold, sn_dynamic *out
 sn_status sn_reduce_oscillation(const sn_curve *curve, sn_dynamic *out) {
     SN_ASSERT(curve && out);
     *out = (sn_dynamic){0};
+    SN_TRY(sn_curve_expect(curve, SN_CURVE_UNIAXIAL, "a test with sinusoids"));
     if (!curve->time)
         return sn_fail(SN_E_DATA, "%s: no time column: sinusoids need one", curve->name);
     double low = curve->stretch[0], high = low, noise;
