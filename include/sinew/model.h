@@ -173,19 +173,27 @@ typedef enum sn_integrator {
     SN_INTEGRATOR_IMPLICIT,
     SN_INTEGRATOR_QUASI_STATIC
 } sn_integrator;
+/// Of the implicit integrator.
+typedef enum sn_scheme {
+    SN_SCHEME_BDF2,          ///< second order, little damping of its own
+    SN_SCHEME_BACKWARD_EULER ///< first order, damps what is fast against the step
+} sn_scheme;
 typedef enum sn_precision { SN_SINGLE, SN_DOUBLE } sn_precision;
 
 typedef struct sn_springs_def {
     sn_rung rung;
     bool volume; ///< nodal volume energy
     sn_integrator integrator;
-    double step; ///< seconds; 0 chooses: explicit from the highest frequency, quasi-static from
-                 ///< output_every
-    sn_precision precision;
+    sn_scheme scheme; ///< implicit
+    double step; ///< seconds; 0 chooses: explicit from the highest frequency, implicit from the
+                 ///< time a shear wave takes across the body, quasi-static from output_every
+    sn_precision precision; ///< of the explicit integrator; the others run in double
     int threads;
-    double damping;          ///< mass-proportional Rayleigh coefficient, 1/s, on motion relative to
-                             ///< the rigid motion of the body
-    double memory_tolerance; ///< largest error of the exponentials, of G(0)
+    double damping; ///< mass-proportional Rayleigh coefficient, 1/s, on motion relative to
+                    ///< the rigid motion of the body
+    double stiffness_damping; ///< stiffness-proportional Rayleigh coefficient, s: a stress of this
+                              ///< times the rate of the instantaneous elastic stress
+    double memory_tolerance;  ///< largest error of the exponentials, of G(0)
 } sn_springs_def;
 
 typedef enum sn_element { SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1 } sn_element;
@@ -325,6 +333,10 @@ typedef struct sn_output {
     sn_status (*frame)(void *context, const sn_frame *frame);
     /// Nullable: called now and then; done in 0 … 1.
     void (*progress)(void *context, double done, const char *text);
+    /// Nullable: gets a row at every output (springs only), columns "time", "kinetic_energy",
+    /// "elastic_energy", "memory_energy", "dissipated_energy", "external_work" and
+    /// "energy_residual" (J, not relative).
+    sn_record *energy;
 } sn_output;
 
 /// Numbers of a run, for summary.json.
@@ -338,7 +350,12 @@ typedef struct sn_run_summary {
     double simulated_s, wall_s;
     double real_time_factor;                                  ///< simulated_s / wall_s
     double step_wall_p50_s, step_wall_p99_s, step_wall_max_s; ///< wall time of one step
-    double kinetic_J, elastic_J, dissipated_J, external_work_J;
+    double kinetic_J;
+    double elastic_J; ///< springs: of the equilibrium part of the law, g_inf (W + U); continuum: of
+                      ///< the instantaneous law
+    double memory_J;  ///< springs: stored in the branches of the memory
+    double instant_J; ///< of the instantaneous law, W + U, whatever has relaxed
+    double dissipated_J, external_work_J;
     double energy_residual; ///< relative to the largest of the terms
     int memory_terms;
     double memory_error;     ///< stated error of the exponentials, of G(0)

@@ -30,7 +30,8 @@ SN_API int sn_net_spring_count(const sn_net *net);
 SN_API int sn_net_cell_count(const sn_net *net);
 /// The exponentials in use, of the tissue of region 0.
 SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
-/// The explicit step, seconds: 0.9 of the stability limit at rest, or the case's own.
+/// The step, seconds: explicit 0.9 of the stability limit at rest, implicit as chosen, or the
+/// case's own.
 SN_API double sn_net_step(const sn_net *net);
 
 /// The springs of a central net: the nodes of the mesh at their ends (spring_count x 2) and their
@@ -65,7 +66,7 @@ SN_API sn_status sn_state_push(const sn_net *net, sn_state *state, int node, con
 /// the case prescribes. A node that another tool holds changes hands. Their reaction is part of the
 /// tool's force and torque; they are in no contact with tools.
 /// @param nodes  Nullable: all nodes that touch the tool now
-/// @return nodes that the tool holds.
+/// @return nodes that the tool holds; none but with the integrator explicit.
 SN_API int sn_state_grasp(const sn_net *net, sn_state *state, int tool, int count,
                           const int *nodes);
 /// Lets go of all nodes that a tool holds; they keep their velocity.
@@ -86,7 +87,7 @@ typedef struct sn_step_info {
     int warnings; ///< counted so far: steps cut, states recovered
 } sn_step_info;
 
-/// Advances by at most dt seconds, one explicit step. Never allocates.
+/// Advances by at most dt seconds, one explicit or implicit step. Never allocates.
 SN_API sn_step_info sn_state_step(const sn_net *net, sn_state *state, double dt);
 /// Arrays of the engine, to read without a copy; they hold until the next call that changes the
 /// state. A node's numbers stand in a row of `stride`, x y z first; node i of the mesh has row
@@ -127,16 +128,16 @@ SN_API sn_status sn_state_load(const sn_net *net, sn_state *state, const void *b
 /// Runs a case to its end. Fields as in sn_continuum_run(), velocity [m/s] in addition; frames and
 /// rows at time 0, every output_every, and at the end. Reactions are what supports and prescribed
 /// motion give the body (mass times acceleration less all other forces there), tool forces what the
-/// tissue gives the tool. summary->elastic_J is W + U of the instantaneous law at the end,
-/// dissipated_J what damping took and, with memory, the work done on the tissue less elastic_J
-/// (below zero where slow loading let the memory relax).
+/// tissue gives the tool. summary->elastic_J is the energy of the equilibrium part of the law at
+/// the end, memory_J what the branches of the memory hold, dissipated_J what damping took and, with
+/// memory, the work done on the tissue less what it stored.
 /// @return SN_OK also where the run stopped early (summary->converged false, summary->reason).
 SN_API sn_status sn_springs_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,
                                 sn_record *history);
 
 /// The same, stopped and continued: with restart->state it goes on behind the output after which
 /// those bytes were saved, whose frame is handed out once more. History and summary, but for wall
-/// times, come out with the same bits as without a stop. Integrators explicit and quasi-static.
+/// times, come out with the same bits as without a stop.
 /// @return as sn_springs_run(), and as sn_state_load().
 SN_API sn_status sn_springs_resume(const sn_case *c, const sn_output *output,
                                    const sn_restart *restart, sn_run_summary *summary,

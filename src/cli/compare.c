@@ -215,7 +215,7 @@ static sn_status compare(const char *path, const char *folder, const cli_argumen
     json_t *json = NULL;
     char file[4096];
     cli_progress progress = cli_progress_start(arguments);
-    sn_output output = {&progress, NULL, cli_progress_show};
+    sn_output output = {.context = &progress, .progress = cli_progress_show};
     sn_status status;
     SN_TRY_GOTO(status, sn_case_read(path, &c));
     status = sn_compare(c, &output, &r);

@@ -41,6 +41,7 @@ static json_t *summary_json(const sn_run_summary *s, const sn_record *history,
     put_cost(json, s);
     cli_put_number(json, "kinetic_J", s->kinetic_J);
     cli_put_number(json, "elastic_J", s->elastic_J);
+    cli_put_number(json, "memory_J", s->memory_J);
     cli_put_number(json, "dissipated_J", s->dissipated_J);
     cli_put_number(json, "external_work_J", s->external_work_J);
     cli_put_number(json, "energy_residual", s->energy_residual);
@@ -65,6 +66,7 @@ typedef struct run_context {
     int earlier; ///< frames of the run that is resumed; -1 until they are known
     sn_refinement refinement;
     double *displacement; ///< of the last frame                    (nodes x 3)
+    sn_record *energy;    ///< rows of energy.csv; none where the engine gives none
 } run_context;
 
 static sn_status take_frame(void *context, const sn_frame *frame) {
@@ -171,6 +173,8 @@ static sn_status write_results(const char *folder, const sn_case *c, const sn_ru
                                const sn_record *history, const run_context *r) {
     char path[4096];
     SN_TRY(sn_curve_write(cli_path(path, sizeof path, folder, "history.csv"), history, true));
+    if (r->energy->rows > 0)
+        SN_TRY(sn_curve_write(cli_path(path, sizeof path, folder, "energy.csv"), r->energy, true));
     json_t *json = summary_json(s, history, &r->refinement);
     sn_status status = cli_write_json(folder, "summary.json", json);
     json_decref(json);
@@ -195,7 +199,8 @@ static void print_summary(const sn_run_summary *s, const sn_record *history,
     run_refinement_print(refinement);
     if (*s->note) printf("  note: %s\n", s->note);
     if (folder)
-        printf("  results in %s (report.html, summary.json, history.csv, fields.pvd)\n", folder);
+        printf("  results in %s (report.html, summary.json, history.csv, fields.pvd%s)\n", folder,
+               strcmp(s->engine, "springs") == 0 ? ", energy.csv" : "");
 }
 
 typedef struct run_options {
@@ -230,10 +235,12 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
     sn_case *c = NULL;
     sn_record *history = NULL;
     run_context r = {.progress = cli_progress_start(arguments), .earlier = o->resume ? -1 : 0};
-    sn_output output = {&r, take_frame, pass_progress};
+    sn_output output = {.context = &r, .frame = take_frame, .progress = pass_progress};
     sn_status status;
     SN_TRY_GOTO(status, sn_case_read(path, &c));
     SN_TRY_GOTO(status, sn_record_create(c->name, &history));
+    SN_TRY_GOTO(status, sn_record_create(c->name, &r.energy));
+    output.energy = o->folder ? r.energy : NULL;
     r.nodes = c->mesh->node_count;
     r.displacement = sn_alloc((size_t)r.nodes, 3 * sizeof *r.displacement);
     if (!r.displacement) {
@@ -260,6 +267,7 @@ fail:
     sn_vtu_destroy(r.vtu);
     sn_refinement_release(&r.refinement);
     sn_free(r.displacement);
+    sn_record_destroy(r.energy);
     sn_record_destroy(history);
     sn_case_destroy(c);
     return status;

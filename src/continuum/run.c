@@ -131,6 +131,7 @@ static void sum_up(sn_fe_march *m, sn_run_summary *s) {
         snprintf(s->note, sizeof s->note,
                  "elastic_J is the energy of the last strain if it were reached at once; a relaxed "
                  "body stores less, so dissipated_J (work minus elastic_J) may be negative");
+    s->instant_J = s->elastic_J;
 }
 
 sn_status sn_continuum_run(const sn_case *c, const sn_output *output, sn_run_summary *summary,

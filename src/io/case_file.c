@@ -27,6 +27,7 @@ static sn_status read_tolerance(const sn_yaml *node, double *value) {
 // In the order of the enums.
 static const char *const rung_names[] = {"central", "coupled", "smoothed"};
 static const char *const integrator_names[] = {"explicit", "implicit", "quasi-static"};
+static const char *const scheme_names[] = {"bdf2", "backward-euler"};
 static const char *const precision_names[] = {"single", "double"};
 static const char *const element_names[] = {"P1", "P2", "P2P1"};
 static const char *const analysis_names[] = {"quasi-static", "dynamic", "linear"};
@@ -46,12 +47,31 @@ static sn_status read_step(const sn_yaml *node, double *step) {
     return sn_yaml_expected(node, SN_E_SYNTAX, "auto or a time such as \"0.1 ms\"");
 }
 
+static sn_status read_coefficient(const sn_yaml *node, const char *unit, double *value) {
+    SN_TRY(sn_yaml_quantity(node, unit, value));
+    if (*value >= 0.0) return SN_OK;
+    return sn_yaml_expected(node, SN_E_RANGE, unit[0] == 's' ? "0 s or more" : "0 1/s or more");
+}
+
+// a number is that of the mass
+static sn_status read_damping(const sn_yaml *node, sn_springs_def *def) {
+    static const char *const keys[] = {"mass", "stiffness"};
+    const sn_yaml *value;
+    if (node->kind == SN_YAML_TEXT) return read_coefficient(node, "1/s", &def->damping);
+    SN_TRY(sn_yaml_map(node, keys, 2));
+    if ((value = sn_yaml_get(node, "mass"))) SN_TRY(read_coefficient(value, "1/s", &def->damping));
+    if ((value = sn_yaml_get(node, "stiffness")))
+        SN_TRY(read_coefficient(value, "s", &def->stiffness_damping));
+    return SN_OK;
+}
+
 sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
-    static const char *const keys[] = {"model",     "volume",  "integrator", "step",
-                                       "precision", "threads", "damping",    "memory_tolerance"};
+    static const char *const keys[] = {"model",   "volume",  "integrator",
+                                       "scheme",  "step",    "precision",
+                                       "threads", "damping", "memory_tolerance"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 8));
+    SN_TRY(sn_yaml_map(node, keys, 9));
     if ((value = sn_yaml_get(node, "model"))) {
         SN_TRY(sn_yaml_choice(value, rung_names, 3, &index));
         def->rung = (sn_rung)index;
@@ -61,16 +81,17 @@ sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
         SN_TRY(sn_yaml_choice(value, integrator_names, 3, &index));
         def->integrator = (sn_integrator)index;
     }
+    if ((value = sn_yaml_get(node, "scheme"))) {
+        SN_TRY(sn_yaml_choice(value, scheme_names, 2, &index));
+        def->scheme = (sn_scheme)index;
+    }
     if ((value = sn_yaml_get(node, "step"))) SN_TRY(read_step(value, &def->step));
     if ((value = sn_yaml_get(node, "precision"))) {
         SN_TRY(sn_yaml_choice(value, precision_names, 2, &index));
         def->precision = (sn_precision)index;
     }
     if ((value = sn_yaml_get(node, "threads"))) SN_TRY(sn_yaml_int(value, 1, 1024, &def->threads));
-    if ((value = sn_yaml_get(node, "damping"))) {
-        SN_TRY(sn_yaml_quantity(value, "1/s", &def->damping));
-        if (def->damping < 0.0) return sn_yaml_expected(value, SN_E_RANGE, "0 1/s or more");
-    }
+    if ((value = sn_yaml_get(node, "damping"))) SN_TRY(read_damping(value, def));
     if ((value = sn_yaml_get(node, "memory_tolerance")))
         SN_TRY(read_tolerance(value, &def->memory_tolerance));
     return SN_OK;

@@ -14,6 +14,7 @@ sn_springs_def sn_springs_def_default(void) {
                             .precision = SN_SINGLE,
                             .threads = 1,
                             .damping = 0,
+                            .stiffness_damping = 0,
                             .memory_tolerance = 1e-3};
 }
 

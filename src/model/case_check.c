@@ -361,6 +361,9 @@ static sn_status check_settings(const sn_case *c) {
     if (!(c->springs.damping >= 0) || !isfinite(c->springs.damping))
         return sn_fail(SN_E_RANGE, "springs: damping is %g 1/s: 0 or more expected",
                        c->springs.damping);
+    if (!(c->springs.stiffness_damping >= 0) || !isfinite(c->springs.stiffness_damping))
+        return sn_fail(SN_E_RANGE, "springs: stiffness damping is %g s: 0 or more expected",
+                       c->springs.stiffness_damping);
     SN_TRY(check_positive("continuum: steps", "", c->continuum.steps));
     SN_TRY(check_positive("continuum: tolerance", "", c->continuum.tolerance));
     return check_positive("continuum: memory_tolerance", "", c->continuum.memory_tolerance);

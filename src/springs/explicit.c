@@ -1,4 +1,4 @@
-// The explicit run: steps, records, counts energy.
+// The run with inertia, explicit or implicit: steps, records, counts energy.
 // SPDX-License-Identifier: Apache-2.0
 #include <math.h>
 #include <stdio.h>
@@ -11,18 +11,6 @@ typedef struct ledger {
     double *ext;  ///< of loads and tools at the start of the step (nodes x 3)
     double fixed; ///< kinetic energy of prescribed directions then
 } ledger;
-
-static sn_moment moment_of(const sn_state *s) {
-    return (sn_moment){.time = s->time,
-                       .precision = s->precision,
-                       .u = s->u,
-                       .v = s->v,
-                       .f = s->now.f,
-                       .store = s->store,
-                       .pressure = s->now.pressure,
-                       .a_fixed = s->a_fixed,
-                       .tool_force = s->tool_force};
-}
 
 static double fixed_kinetic(const sn_net *net, const sn_state *s) {
     double sum = 0;
@@ -41,29 +29,49 @@ static double fixed_kinetic(const sn_net *net, const sn_state *s) {
     return sum;
 }
 
-// kinetic energy at the time of u: free velocities are half a step behind
+// kinetic energy at the time of u: free velocities of the explicit step are half of it behind
 static double kinetic(const sn_net *net, const sn_state *s) {
+    const double behind = s->implicit ? 0.0 : 0.5 * s->last_step;
     double sum = 0;
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
             double v = sn_real_at(s->precision, s->v, at);
             if (!(net->fixed_bits[i] >> d & 1) && s->grip[i].tool < 0)
-                v += 0.5 * s->last_step * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
+                v += behind * sn_real_at(s->precision, s->now.f, at) / net->mass[i];
             sum += 0.5 * net->mass[i] * v * v;
         }
     return sum;
 }
 
+static sn_moment moment_of(const sn_net *net, const sn_state *s) {
+    return (sn_moment){.time = s->time,
+                       .precision = s->precision,
+                       .u = s->u,
+                       .v = s->v,
+                       .f = s->now.f,
+                       .store = s->store,
+                       .pressure = s->now.pressure,
+                       .a_fixed = s->a_fixed,
+                       .tool_force = s->tool_force,
+                       .kinetic = s->broken ? 0.0 : kinetic(net, s),
+                       .damped = s->damped_energy};
+}
+
+// way of number `at` in the last step
+static double way_of(const sn_state *s, size_t at) {
+    if (s->implicit) return ((const double *)s->u)[at] - sn_implicit_before(s->implicit)[at];
+    return s->last_step * sn_real_at(s->precision, s->v, at);
+}
+
 // work of one step: all forces over the way of all nodes, by the trapezoidal rule
 static void count_work(sn_run *run, const sn_state *s, ledger *l) {
     const sn_net *net = run->net;
-    const double h = s->last_step;
     double all = 0, ext = 0, on_fixed = 0;
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
-            double way = h * sn_real_at(s->precision, s->v, at);
+            double way = way_of(s, at);
             double work = 0.5 * way *
                           (sn_real_at(s->precision, s->f_before, at) +
                            sn_real_at(s->precision, s->now.f, at));
@@ -74,7 +82,7 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
     for (int k = 0; k < net->loaded_count; k++)
         for (int d = 0; d < 3; d++) {
             int at = 3 * net->loaded[k] + d;
-            double way = h * sn_real_at(s->precision, s->v, 4 * (size_t)net->loaded[k] + (size_t)d);
+            double way = way_of(s, 4 * (size_t)net->loaded[k] + (size_t)d);
             ext += 0.5 * way * (l->ext[at] + s->ext[at]);
             l->ext[at] = s->ext[at];
         }
@@ -86,35 +94,29 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
 }
 
 static sn_status record(sn_run *run, const sn_state *s) {
-    const sn_moment moment = moment_of(s);
+    const sn_moment moment = moment_of(run->net, s);
     return sn_run_record(run, &moment);
 }
 
-static double elastic(sn_run *run, const sn_state *s) {
-    const sn_moment moment = moment_of(s);
-    sn_fields_fill(run->net, run->fields, &moment);
-    return sn_fields_elastic(run->net, run->fields);
-}
-
-static void stop(sn_run *run, double time) {
+static void stop(sn_run *run, const sn_state *s) {
+    const double time = s->time;
     run->summary->converged = false;
+    if (s->implicit) {
+        snprintf(run->summary->reason, sizeof run->summary->reason, "%s",
+                 sn_implicit_reason(s->implicit));
+        return;
+    }
     snprintf(run->summary->reason, sizeof run->summary->reason,
              "the motion became infinite at %.6g s of %.6g s, after %ld steps of about %.3g s: the "
              "loads may be too sudden, or the tissue too soft for them",
              time, run->net->until, run->summary->steps, time / (double)run->summary->steps);
 }
 
-static sn_status start(sn_run *run, sn_state *s, ledger *l) {
-    SN_TRY(record(run, s));
-    memcpy(l->ext, s->ext, (size_t)run->net->nodes * 3 * sizeof *l->ext);
-    run->elastic_start = elastic(run, s);
-    return SN_OK;
-}
-
-static sn_status resume(sn_run *run, sn_state *s, const sn_piece *own, int count) {
-    SN_TRY(sn_run_load(run, s, own, count));
-    const sn_moment moment = moment_of(s);
-    return sn_run_frame(run, &moment);
+// of the next step
+static double pace(const sn_net *net, const sn_state *s, double left) {
+    if (s->implicit) return left / fmax(1.0, ceil(left / net->step - 1e-6));
+    // the last two steps before a landing share what is left
+    return left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
 }
 
 // steps from now to `next`
@@ -123,9 +125,7 @@ static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     sn_run_summary *summary = run->summary;
     while (s->time < next - tiny && !s->broken) {
         double left = next - s->time, start = sn_clock();
-        // the last two steps before a landing share what is left
-        double step = left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
-        sn_step_info info = sn_state_step(run->net, s, step);
+        sn_step_info info = sn_state_step(run->net, s, pace(run->net, s, left));
         sn_run_wall(run, sn_clock() - start);
         summary->steps++;
         if (s->broken) return;
@@ -136,7 +136,32 @@ static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     s->time = next; // rounding of sums
 }
 
-sn_status sn_run_explicit(sn_run *run) {
+static sn_status start(sn_run *run, sn_state *s, ledger *l) {
+    memcpy(l->ext, s->ext, (size_t)run->net->nodes * 3 * sizeof *l->ext);
+    const sn_moment moment = moment_of(run->net, s);
+    run->stored_start = sn_run_store(run, &moment);
+    return record(run, s);
+}
+
+static sn_status resume(sn_run *run, sn_state *s, const sn_piece *own, int count) {
+    SN_TRY(sn_run_load(run, s, own, count));
+    const sn_moment moment = moment_of(run->net, s);
+    return sn_run_frame(run, &moment);
+}
+
+static void finish(sn_run *run, const sn_state *s) {
+    const sn_moment moment = moment_of(run->net, s);
+    sn_run_summary *summary = run->summary;
+    if (s->broken) stop(run, s);
+    summary->simulated_s = s->time;
+    summary->kinetic_J = moment.kinetic;
+    summary->dissipated_J = moment.damped;
+    sn_run_store(run, &moment);
+    if (s->implicit)
+        sn_implicit_counts(s->implicit, &summary->newton_iterations, &summary->cutbacks);
+}
+
+sn_status sn_run_motion(sn_run *run) {
     const sn_net *net = run->net;
     sn_state *s = NULL;
     ledger l = {.ext = sn_alloc((size_t)net->nodes * 3, sizeof(double))};
@@ -154,15 +179,10 @@ sn_status sn_run_explicit(sn_run *run) {
         if (s->broken || next < due) continue;
         status = record(run, s);
         output++;
+        if (s->implicit) sn_implicit_forget(s->implicit);
         if (status == SN_OK) status = sn_run_save(run, s, own, 2);
     }
-    if (status == SN_OK) {
-        if (s->broken) stop(run, s->time);
-        run->summary->simulated_s = s->time;
-        run->summary->kinetic_J = s->broken ? 0.0 : kinetic(net, s);
-        run->summary->elastic_J = elastic(run, s);
-        run->summary->dissipated_J = s->damped_energy;
-    }
+    if (status == SN_OK) finish(run, s);
     sn_state_destroy(s);
     sn_free(l.ext);
     return status;

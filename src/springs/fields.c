@@ -110,6 +110,16 @@ static void green_strain(const double F[9], double E[6]) {
     }
 }
 
+double sn_net_law_strain(const sn_net *net, const sn_moment *m, int slot, double E[6]) {
+    cell_shape c;
+    if (net->rung == SN_RUNG_SMOOTHED)
+        find_edge_shape(net, m, slot, &c);
+    else
+        find_shape(net, m, slot, &c);
+    green_strain(c.F, E);
+    return c.V;
+}
+
 // from material axes to space: Q^T E Q
 static void turn_back(const sn_net *net, const double E[6], double *out) {
     const double *Q = net->axes;
@@ -322,6 +332,16 @@ double sn_fields_elastic(const sn_net *net, const sn_fields *f) {
     const double *volume = net->data[SN_DOUBLE].volume;
     double sum = 0;
     for (int e = 0; e < net->cells; e++) sum += f->energy[e] * volume[net->cell_slot[e]];
+    return sum;
+}
+
+sn_stored sn_fields_stored(const sn_net *net, const sn_fields *f, const sn_moment *m) {
+    const double *volume = net->data[SN_DOUBLE].volume;
+    sn_stored sum = {.instant = sn_fields_elastic(net, f), .memory = sn_net_memory_energy(net, m)};
+    for (int e = 0; e < net->cells; e++) {
+        const int slot = net->cell_slot[e];
+        sum.elastic += region_of(net, slot)->memory.g_inf * f->energy[e] * volume[slot];
+    }
     return sum;
 }
 

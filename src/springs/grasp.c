@@ -29,6 +29,7 @@ static void hold(const sn_net *net, sn_state *s, int tool, const sn_pose *pose, 
 
 int sn_state_grasp(const sn_net *net, sn_state *s, int tool, int count, const int *nodes) {
     SN_ASSERT(tool >= 0 && tool < net->tool_count);
+    if (net->integrator != SN_INTEGRATOR_EXPLICIT) return 0;
     sn_pose pose;
     sn_net_tool_pose(net, s, tool, s->time, &pose);
     for (int k = 0; k < count && nodes; k++) {

@@ -9,9 +9,6 @@
 
 static sn_status check_settings(const sn_case *c) {
     const sn_springs_def *def = &c->springs;
-    if (def->integrator == SN_INTEGRATOR_IMPLICIT)
-        return sn_fail(SN_E_UNSUPPORTED, "springs: integrator implicit is not supported; use "
-                                         "explicit or quasi-static");
     if (!(def->step >= 0) || !isfinite(def->step))
         return sn_fail(SN_E_RANGE, "springs: step is %g s, expected a positive time or auto",
                        def->step);
@@ -114,12 +111,11 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
     }
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(check_central(c, net, region));
     for (int k = 0; k < SN_VALUES_MAX; k++) region->value_f[k] = (float)t->value[k];
-    if (net->integrator == SN_INTEGRATOR_EXPLICIT && !isfinite(t->density))
-        return sn_fail(
-            SN_E_DEFINITION,
-            "tissue %s: no density: explicit springs have inertia; give it in the tissue, "
-            "such as density: 1060 kg/m3, or use integrator quasi-static",
-            t->name);
+    if (net->integrator != SN_INTEGRATOR_QUASI_STATIC && !isfinite(t->density))
+        return sn_fail(SN_E_DEFINITION,
+                       "tissue %s: no density: moving springs have inertia; give it in the tissue, "
+                       "such as density: 1060 kg/m3, or use integrator quasi-static",
+                       t->name);
     region->density = isfinite(t->density) ? t->density : 0.0;
     return SN_OK;
 }
@@ -133,6 +129,9 @@ static sn_status set_memory(const sn_case *c, sn_net_region *region, double t_mi
                        region->tissue.name);
     SN_TRY(sn_memory_compress(&region->tissue.memory, t_min, c->until, c->springs.memory_tolerance,
                               &region->memory));
+    // damping by stiffness is a viscous part of the law: it sees no rigid motion
+    if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC)
+        region->memory.viscous += c->springs.stiffness_damping;
     region->branches = region->memory.terms + (region->memory.viscous > 0);
     return SN_OK;
 }
@@ -302,6 +301,7 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->damping = def->damping;
     net->until = c->until;
     net->output_every = c->output_every;
+    net->scheme = def->scheme;
     net->asked_step = def->step;
     memcpy(net->gravity, c->gravity, sizeof net->gravity);
     net->threads = sn_team_limit(def->threads);
@@ -344,6 +344,8 @@ static sn_status build(const sn_case *c, sn_net *net) {
     if (net->integrator == SN_INTEGRATOR_EXPLICIT) {
         SN_TRY(sn_net_find_step(net));
         t_min = net->step;
+    } else if (net->integrator == SN_INTEGRATOR_IMPLICIT) {
+        t_min = net->step = sn_net_implicit_step(net);
     } else {
         double corner = sn_net_next_corner(net, 0.0);
         if (isfinite(corner)) t_min = fmin(t_min, 1e-3 * corner);

@@ -120,12 +120,13 @@ struct sn_net {
     bool volume;
     sn_volume_mode volume_mode;
     sn_integrator integrator;
-    sn_precision precision; ///< of the explicit step
+    sn_scheme scheme;
+    sn_precision precision; ///< of the step
     int isa, threads;
     double damping;
     double until, output_every;
     double asked_step; ///< of the case; 0: chosen
-    double step;       ///< explicit
+    double step;       ///< explicit, implicit
     double omega2;     ///< highest eigenvalue of M^-1 K at rest, 1/s2
     double *mode;      ///< of omega2, in mass-scaled displacements      (nodes x 3)
     double edge;       ///< mean length of a cell's edges, m
@@ -208,6 +209,8 @@ typedef struct sn_grip {
     double way_a[3];                 ///< acceleration of the last step
 } sn_grip;
 
+typedef struct sn_implicit sn_implicit;
+
 struct sn_state {
     double time;
     sn_precision precision;
@@ -247,7 +250,8 @@ struct sn_state {
     int warnings;
     bool broken;  ///< a step gave numbers that are not finite; the state was put back to rest
     bool crushed; ///< volume points were, and some cells may still be
-    double damped_energy; ///< taken by damping so far, J
+    double damped_energy;  ///< taken by damping by mass so far, J
+    sn_implicit *implicit; ///< Nullable: what the implicit integrator works with
 };
 
 //---- building ------------------------------------------------------------------------------------
@@ -419,6 +423,28 @@ double sn_net_stable_step(const sn_net *net, double omega2);
 /// Part of the stability limit that a step takes.
 #define SN_STEP_SAFETY 0.9
 
+//---- implicit integration ------------------------------------------------------------------------
+
+/// The step that the implicit integrator chooses for a net, or the case's own, s.
+double sn_net_implicit_step(const sn_net *net);
+/// For a state whose u, v, store, factors and scratch stand.
+sn_status sn_implicit_create(const sn_net *net, sn_implicit **implicit);
+void sn_implicit_destroy(sn_implicit *implicit); // NULL is allowed
+/// Forgets the steps before: the state stands at rest.
+void sn_implicit_reset(const sn_net *net, sn_implicit *implicit);
+/// One step of at most dt; no allocation. Breaks the state where none, however short, succeeds.
+void sn_implicit_advance(const sn_net *net, sn_state *s, double dt);
+/// Displacements at the start of the last step, quads.
+const double *sn_implicit_before(const sn_implicit *implicit);
+/// Why the last step was cut or failed, with numbers; empty where it was not.
+const char *sn_implicit_reason(const sn_implicit *implicit);
+/// Newton corrections, and steps cut, so far.
+void sn_implicit_counts(const sn_implicit *implicit, int *corrections, int *cuts);
+/// Back to rest, but for what is prescribed at the state's time.
+void sn_state_rest(const sn_net *net, sn_state *s);
+/// Smallest volume ratio of any cell; NAN where one is not finite. u: quads.
+double sn_net_smallest_ratio(const sn_net *net, const double *u);
+
 //---- what a run hands out ------------------------------------------------------------------------
 
 static inline double sn_real_at(sn_precision precision, const void *array, size_t i) {
@@ -442,6 +468,7 @@ typedef struct sn_moment {
     const void *pressure;    ///< at volume points
     const double *a_fixed;   ///< Nullable: at rest
     double (*tool_force)[3]; ///< read only
+    double kinetic, damped;  ///< J: of motion; taken by damping by mass so far
 } sn_moment;
 typedef struct sn_fields sn_fields;
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields);
@@ -452,6 +479,19 @@ void sn_fields_fill(const sn_net *net, sn_fields *fields, const sn_moment *momen
 sn_status sn_fields_emit(const sn_fields *fields, double time, const sn_output *output);
 /// Energy of the instantaneous law, W + U, of the whole body, from what was filled last, J.
 double sn_fields_elastic(const sn_net *net, const sn_fields *fields);
+/// What a body has stored, J.
+typedef struct sn_stored {
+    double instant; ///< of the instantaneous law, W + U
+    double elastic; ///< of the equilibrium part, g_inf (W + U)
+    double memory;  ///< in the branches
+} sn_stored;
+/// From what was filled last, which was this moment.
+sn_stored sn_fields_stored(const sn_net *net, const sn_fields *fields, const sn_moment *moment);
+/// Green strain of the place of a slot where a solid law is evaluated (a cell, or a smoothed edge),
+/// in material axes; returns its volume, 0 where it only fills a block.
+double sn_net_law_strain(const sn_net *net, const sn_moment *moment, int slot, double E[6]);
+/// What the branches of the memory have stored, J.
+double sn_net_memory_energy(const sn_net *net, const sn_moment *moment);
 /// Appends one row: time, probes, tools. `row` has room for the columns.
 sn_status sn_net_history_row(const sn_net *net, const sn_moment *moment, double *row,
                              sn_record *history);
@@ -472,6 +512,13 @@ typedef struct sn_tangent_call {
 void sn_tangent_assemble(const sn_net *net, sn_tangent *tangent, const sn_tangent_call *call);
 /// Adds a 3 x 3 block at a node (contact).
 void sn_tangent_add(sn_tangent *tangent, int node, const double block[9]);
+/// A sn_tangent_sink that adds the symmetric part of a block to the tangent `context`.
+void sn_tangent_add_contact(void *context, int node, const double block[9]);
+/// Adds factor times the mass of each node.
+void sn_tangent_add_mass(const sn_net *net, sn_tangent *tangent, double factor);
+/// Takes factor sum b b^T off every product from now on; the vectors b stay the caller's.
+/// count 0: nothing.                                          (count x nodes x 3)
+void sn_tangent_lower(sn_tangent *tangent, int count, const double *vectors, double factor);
 /// Inverts the diagonal blocks, with prescribed directions held: after all has been added.
 void sn_tangent_prepare(const sn_net *net, sn_tangent *tangent);
 /// y <- K x, all directions. x, y: (nodes x 3).
@@ -490,7 +537,13 @@ typedef struct sn_piece {
     size_t bytes;
 } sn_piece;
 #define SN_PIECES_MAX 64
+#define SN_IMPLICIT_PIECES 9
 uint64_t sn_net_fingerprint(const sn_net *net);
+/// What of the implicit integrator later steps depend on; returns how many pieces. Calls
+/// sn_implicit_forget().
+int sn_implicit_pieces(const sn_net *net, sn_implicit *implicit, sn_piece *piece);
+/// The next step builds its tangent anew, as after going on from bytes.
+void sn_implicit_forget(sn_implicit *implicit);
 
 #define SN_WALLS 65536 ///< wall times kept of a run
 typedef struct sn_run {
@@ -506,7 +559,7 @@ typedef struct sn_run {
     long wall_seen;
     double internal_work; ///< done on the tissue by its nodes so far, J
     double external_work; ///< J
-    double elastic_start, kinetic_start;
+    double stored_start, kinetic_start;
 } sn_run;
 void sn_run_wall(sn_run *run, double seconds);
 /// @return SN_OK; tells progress at most a few times a second.
@@ -525,5 +578,9 @@ sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int c
 sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count);
 /// Time of output k, or the end of the run; INFINITY after the end.
 double sn_run_output_time(const sn_net *net, long k);
-sn_status sn_run_explicit(sn_run *run);
+/// Fills the fields and the stored energies of the summary; returns elastic and memory, J.
+double sn_run_store(sn_run *run, const sn_moment *moment);
+/// Rows to be filled in sn_output.energy.
+sn_status sn_run_energy_rows(sn_record *energy, int rows);
+sn_status sn_run_motion(sn_run *run);
 sn_status sn_run_quasi_static(sn_run *run);

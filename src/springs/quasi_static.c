@@ -44,7 +44,7 @@ typedef struct solver {
 
 //---- residual ------------------------------------------------------------------------------------
 
-static double smallest_ratio(const sn_net *net, const double *u) {
+double sn_net_smallest_ratio(const sn_net *net, const double *u) {
     const double *gradient = net->data[SN_DOUBLE].gradient;
     double least = INFINITY;
     for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
@@ -67,15 +67,6 @@ static double smallest_ratio(const sn_net *net, const double *u) {
     return least;
 }
 
-// conjugate gradients want the symmetric part, which is all of it but for friction
-static void contact_block(void *context, int node, const double block[9]) {
-    double symmetric[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            symmetric[3 * i + j] = 0.5 * (block[3 * i + j] + block[3 * j + i]);
-    sn_tangent_add(context, node, symmetric);
-}
-
 static void external(solver *v, sn_tangent *tangent) {
     const sn_net *net = v->net;
     sn_state *s = v->s;
@@ -93,7 +84,7 @@ static void external(solver *v, sn_tangent *tangent) {
                                   .after = v->touch,
                                   .ext = v->ext,
                                   .tool_force = s->tool_force,
-                                  .tangent = tangent ? contact_block : NULL,
+                                  .tangent = tangent ? sn_tangent_add_contact : NULL,
                                   .context = tangent};
     sn_net_contact(net, &call);
 }
@@ -202,7 +193,7 @@ static bool predict(solver *v, double h) {
     remember_place(v);
     place(v, 1.0);
     land_prescribed(v);
-    v->smallest = smallest_ratio(v->net, v->s->u);
+    v->smallest = sn_net_smallest_ratio(v->net, v->s->u);
     if (!(v->smallest > 0)) return false;
     v->residual = find_residual(v, SN_MEMORY_TRIAL);
     return isfinite(v->residual);
@@ -219,7 +210,7 @@ static bool correct(solver *v, double forcing) {
     double part = 1.0, before = v->residual;
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         place(v, part);
-        v->smallest = smallest_ratio(v->net, v->s->u);
+        v->smallest = sn_net_smallest_ratio(v->net, v->s->u);
         if (!(v->smallest > 0)) continue;
         v->residual = find_residual(v, SN_MEMORY_TRIAL);
         if (v->residual < (1.0 - 1e-3 * part) * before) return true;
@@ -426,12 +417,14 @@ static sn_status march(solver *v) {
     while (v->s->time < net->until) {
         double due = sn_run_output_time(net, output);
         double next = fmin(fmin(due, corner), net->until), left = next - v->s->time;
-        double wish = fmin(p.wish, p.longest), h = left / ceil(left / wish - 1e-6);
+        double wish = fmin(p.wish, p.longest), h = left / fmax(1.0, ceil(left / wish - 1e-6));
         double asked = h;
         if (h < left && left - h < tiny) h = left;
-        if (!step(v, &h)) return SN_OK;
-        p.wish = h < asked ? h : fmax(p.wish, h) * grow;
-        if (net->asked_step > 0 && h == asked) p.wish = net->asked_step;
+        if (left > tiny) { // else an output and a corner at one time
+            if (!step(v, &h)) return SN_OK;
+            p.wish = h < asked ? h : fmax(p.wish, h) * grow;
+            if (net->asked_step > 0 && h == asked) p.wish = net->asked_step;
+        }
         if (v->s->time < next - tiny) continue;
         v->s->time = next;
         if (next == due) {
@@ -495,7 +488,7 @@ sn_status sn_run_quasi_static(sn_run *run) {
         const sn_moment moment = moment_of(&v);
         run->summary->simulated_s = v.s->time;
         sn_fields_fill(run->net, run->fields, &moment);
-        run->summary->elastic_J = sn_fields_elastic(run->net, run->fields);
+        sn_run_store(run, &moment);
     }
     destroy(&v);
     return status;

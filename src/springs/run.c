@@ -1,14 +1,15 @@
-// Runs a case to its end, by either integrator.
+// Runs a case to its end, by any integrator.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Energies of the summary. elastic: W + U of the instantaneous law at the end. external work: of
-// gravity, loads, tools, supports and prescribed motion, by the trapezoidal rule over each step.
-// dissipated: what damping took, and with memory the work done on the tissue less `elastic`, of
-// which branches that have not relaxed yet could still give some back. energy_residual: what is
-// left of
-//     kinetic + elastic + dissipated - external work,
-// over the largest of them; with memory it shows the integration of the motion, without memory that
-// of the tissue too.
+// The ledger. elastic: of the equilibrium part of the law, g_inf (W + U). memory: stored in the
+// branches (energy.c). external work: of gravity, loads, tools, supports and prescribed motion, by
+// the trapezoidal rule over each step; what a tool's friction and penalty take stays on the tool's
+// side. dissipated: what damping by mass took, and with memory or damping by stiffness the work
+// done on the tissue less what it stored, which is never below zero but for the trapezoidal rule
+// and, in cells and smoothed edges, the approximation of energy.c. residual: what is left of
+//     kinetic + elastic + memory + dissipated - external work;
+// with memory it shows the integration of the motion (with the implicit integrator what that takes
+// out of it), without memory that of the tissue too. energy_residual is over the largest of them.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -35,8 +36,61 @@ void sn_run_progress(sn_run *run, double time) {
     run->output->progress(run->output->context, time / run->net->until, text);
 }
 
+double sn_run_store(sn_run *run, const sn_moment *moment) {
+    sn_fields_fill(run->net, run->fields, moment);
+    const sn_stored stored = sn_fields_stored(run->net, run->fields, moment);
+    run->summary->elastic_J = stored.elastic;
+    run->summary->memory_J = stored.memory;
+    run->summary->instant_J = stored.instant;
+    return stored.elastic + stored.memory;
+}
+
+static bool remembers(const sn_net *net) {
+    for (int r = 0; r < net->region_count; r++)
+        if (net->region[r].branches > 0) return true;
+    return false;
+}
+
+// what the tissue took of the work done on it, J
+static double lost_inside(const sn_run *run, double stored) {
+    return remembers(run->net) ? run->internal_work - (stored - run->stored_start) : 0.0;
+}
+
+static const char *const energy_columns[] = {
+    "time",          "kinetic_energy", "elastic_energy", "memory_energy", "dissipated_energy",
+    "external_work", "energy_residual"};
+enum { ENERGY_COLUMNS = 7 };
+
+static sn_status energy_row(sn_run *run, const sn_moment *moment) {
+    sn_record *energy = run->output->energy;
+    const double stored = sn_run_store(run, moment);
+    const double lost = moment->damped + lost_inside(run, stored);
+    const double row[ENERGY_COLUMNS] = {moment->time,
+                                        moment->kinetic,
+                                        run->summary->elastic_J,
+                                        run->summary->memory_J,
+                                        lost,
+                                        run->external_work,
+                                        moment->kinetic - run->kinetic_start + stored -
+                                            run->stored_start + lost - run->external_work};
+    return sn_record_append(energy, row);
+}
+
+static sn_status add_energy_columns(sn_record *energy) {
+    for (int k = 0; energy->series_count < ENERGY_COLUMNS && k < ENERGY_COLUMNS; k++)
+        SN_TRY(sn_record_add_series(energy, energy_columns[k], k == 0 ? "s" : "J"));
+    return SN_OK;
+}
+
+sn_status sn_run_energy_rows(sn_record *energy, int rows) {
+    const double none[ENERGY_COLUMNS] = {0};
+    while (energy->rows < rows) SN_TRY(sn_record_append(energy, none));
+    return SN_OK;
+}
+
 sn_status sn_run_record(sn_run *run, const sn_moment *moment) {
     SN_TRY(sn_net_history_row(run->net, moment, run->row, run->history));
+    if (run->output && run->output->energy) SN_TRY(energy_row(run, moment));
     return sn_run_frame(run, moment);
 }
 
@@ -77,21 +131,16 @@ static void describe(const sn_net *net, sn_run_summary *s) {
     }
 }
 
-static bool remembers(const sn_net *net) {
-    for (int r = 0; r < net->region_count; r++)
-        if (net->region[r].branches > 0) return true;
-    return false;
-}
-
 static void finish(sn_run *run) {
     sn_run_summary *s = run->summary;
     s->wall_s = sn_clock() - run->started;
     s->real_time_factor = s->simulated_s / s->wall_s;
     s->external_work_J = run->external_work;
-    double stored = s->elastic_J - run->elastic_start;
-    if (remembers(run->net)) s->dissipated_J += run->internal_work - stored;
-    double left = s->kinetic_J - run->kinetic_start + stored + s->dissipated_J - s->external_work_J;
-    double largest = fmax(fmax(fabs(s->kinetic_J), fabs(s->elastic_J)),
+    const double stored = s->elastic_J + s->memory_J;
+    s->dissipated_J += lost_inside(run, stored);
+    double left = s->kinetic_J - run->kinetic_start + stored - run->stored_start + s->dissipated_J -
+                  s->external_work_J;
+    double largest = fmax(fmax(fabs(s->kinetic_J), stored),
                           fmax(fabs(s->dissipated_J), fabs(s->external_work_J)));
     s->energy_residual = largest > 0 ? fabs(left) / largest : 0.0;
     size_t kept = (size_t)(run->wall_seen < SN_WALLS ? run->wall_seen : SN_WALLS);
@@ -117,9 +166,7 @@ sn_status sn_springs_resume(const sn_case *c, const sn_output *output, const sn_
                   .started = sn_clock()};
     *summary = (sn_run_summary){.converged = true};
     sn_status status;
-    if (sn_run_goes_on(&run) && c->springs.integrator == SN_INTEGRATOR_IMPLICIT)
-        return sn_fail(SN_E_UNSUPPORTED, "springs: a run of integrator implicit cannot be "
-                                         "continued; explicit and quasi-static can");
+    if (output && output->energy) SN_TRY_GOTO(status, add_energy_columns(output->energy));
     SN_TRY_GOTO(status, sn_net_create(c, &net));
     run.net = net;
     describe(net, summary);
@@ -131,8 +178,8 @@ sn_status sn_springs_resume(const sn_case *c, const sn_output *output, const sn_
         status = SN_E_MEMORY;
         goto fail;
     }
-    SN_TRY_GOTO(status, net->integrator == SN_INTEGRATOR_EXPLICIT ? sn_run_explicit(&run)
-                                                                  : sn_run_quasi_static(&run));
+    SN_TRY_GOTO(status, net->integrator == SN_INTEGRATOR_QUASI_STATIC ? sn_run_quasi_static(&run)
+                                                                      : sn_run_motion(&run));
     finish(&run);
 fail:
     sn_free(run.row);

@@ -173,9 +173,9 @@ static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
         PIECE(gripped_count),
     };
     const int count = (int)(sizeof all / sizeof *all);
-    SN_ASSERT(count <= SN_PIECES_MAX);
+    SN_ASSERT(count + SN_IMPLICIT_PIECES <= SN_PIECES_MAX);
     memcpy(piece, all, sizeof all);
-    return count;
+    return count + (s->implicit ? sn_implicit_pieces(net, s->implicit, piece + count) : 0);
 }
 
 static void write_pieces(const sn_piece *piece, int count, unsigned char *to) {
@@ -258,23 +258,31 @@ sn_status sn_state_load(const sn_net *net, sn_state *s, const void *bytes, size_
 /// Numbers of a run between two outputs.
 typedef struct run_numbers {
     int rows, columns;
+    int energy_columns;            ///< of the rows of sn_output.energy; 0: none was asked for
     double elapsed, step_wall_max; ///< wall time
-    double internal_work, external_work, elastic_start, kinetic_start;
+    double internal_work, external_work, stored_start, kinetic_start;
     sn_run_summary summary;
 } run_numbers;
 
-// numbers, then the state, what the integrator keeps, and the columns of the history
+static sn_record *energy_of(const sn_run *run) {
+    return run->output ? run->output->energy : NULL;
+}
+
+// numbers, then the state, what the integrator keeps, the columns of the history and of the
+// energies
 static sn_status list_pieces(const sn_run *run, const sn_state *s, const sn_piece *own, int count,
                              run_numbers *numbers, sn_piece **piece, int *pieces) {
-    const int columns = run->history->series_count;
-    sn_piece *list = *piece = sn_alloc((size_t)(1 + SN_PIECES_MAX + count + columns), sizeof *list);
+    const int columns = run->history->series_count, energies = numbers->energy_columns;
+    const size_t bytes = (size_t)numbers->rows * sizeof(double);
+    sn_piece *list = *piece =
+        sn_alloc((size_t)(1 + SN_PIECES_MAX + count + columns + energies), sizeof *list);
     if (!list) return SN_E_MEMORY;
     list[0] = (sn_piece){numbers, sizeof *numbers};
     int at = 1 + state_pieces(run->net, s, list + 1);
     for (int k = 0; k < count; k++) list[at++] = own[k];
-    for (int k = 0; k < columns; k++)
-        list[at++] = (sn_piece){run->history->series[k].value,
-                                (size_t)numbers->rows * sizeof *run->history->series[k].value};
+    for (int k = 0; k < columns; k++) list[at++] = (sn_piece){run->history->series[k].value, bytes};
+    for (int k = 0; k < energies; k++)
+        list[at++] = (sn_piece){energy_of(run)->series[k].value, bytes};
     *pieces = at;
     return SN_OK;
 }
@@ -286,10 +294,11 @@ sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int c
     if (!numbers) return SN_E_MEMORY;
     numbers->rows = run->history->rows;
     numbers->columns = run->history->series_count;
+    numbers->energy_columns = energy_of(run) ? energy_of(run)->series_count : 0;
     numbers->elapsed = sn_clock() - run->started;
     numbers->internal_work = run->internal_work;
     numbers->external_work = run->external_work;
-    numbers->elastic_start = run->elastic_start;
+    numbers->stored_start = run->stored_start;
     numbers->kinetic_start = run->kinetic_start;
     numbers->summary = *run->summary;
     sn_piece *piece = NULL;
@@ -317,7 +326,7 @@ static void take_numbers(sn_run *run, const run_numbers *numbers) {
     run->started -= numbers->elapsed;
     run->internal_work = numbers->internal_work;
     run->external_work = numbers->external_work;
-    run->elastic_start = numbers->elastic_start;
+    run->stored_start = numbers->stored_start;
     run->kinetic_start = numbers->kinetic_start;
     *run->summary = numbers->summary;
     run->summary->threads = run->net->threads; // may be another number: the bits are the same
@@ -328,7 +337,7 @@ static sn_status add_rows(sn_run *run, int rows) {
     memset(run->row, 0, (size_t)run->history->series_count * sizeof *run->row);
     for (int k = run->history->rows; k < rows; k++)
         SN_TRY(sn_record_append(run->history, run->row));
-    return SN_OK;
+    return energy_of(run) ? sn_run_energy_rows(energy_of(run), rows) : SN_OK;
 }
 
 sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count) {
@@ -342,10 +351,15 @@ sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count) 
     int pieces;
     sn_status status = SN_OK;
     if (c->bytes >= sizeof(snapshot_head) + sizeof *numbers) memcpy(numbers, from, sizeof *numbers);
+    const int energies = energy_of(run) ? energy_of(run)->series_count : 0;
     if (numbers->rows < 1 || numbers->columns != run->history->series_count ||
-        (size_t)numbers->rows > c->bytes / sizeof(double)) {
-        status = sn_fail(SN_E_DATA, "saved run: %d rows of %d columns, expected %d columns",
-                         numbers->rows, numbers->columns, run->history->series_count);
+        numbers->energy_columns != energies || (size_t)numbers->rows > c->bytes / sizeof(double)) {
+        status =
+            sn_fail(SN_E_DATA,
+                    "saved run: %d rows of %d columns and %d energies, expected %d columns and "
+                    "%d energies",
+                    numbers->rows, numbers->columns, numbers->energy_columns,
+                    run->history->series_count, energies);
         goto fail;
     }
     SN_TRY_GOTO(status, add_rows(run, numbers->rows));

@@ -8,8 +8,9 @@
 // they must have at the new time, and the velocity that leads there.
 //
 // Damping acts on the velocity relative to the rigid motion of the whole body (the velocity and
-// spin that have its momentum and angular momentum), by the factor exp(-damping h): it takes no
-// momentum, does not slow a fall or a spin, and leaves the stability limit where it is or higher.
+// spin that have its momentum and angular momentum), by the factor exp(-damping h), between the two
+// halves of the kick: it takes no momentum, does not slow a fall or a spin, and leaves the
+// stability limit where it is or higher.
 //
 // The highest frequency is looked at again after a number of steps, and as soon as a node can have
 // moved by a certain way; both adapt to how it changes. Between two looks it is taken to grow by as
@@ -76,6 +77,8 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
         return SN_E_MEMORY;
     }
     sn_status status = sn_team_create(net->threads, &s->team);
+    if (status == SN_OK && net->integrator == SN_INTEGRATOR_IMPLICIT)
+        status = sn_implicit_create(net, &s->implicit);
     if (status != SN_OK) {
         sn_state_destroy(s);
         return status;
@@ -88,6 +91,7 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
 void sn_state_destroy(sn_state *s) {
     if (!s) return;
     sn_team_destroy(s->team);
+    sn_implicit_destroy(s->implicit);
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
     void *all[] = {s->chunk_sum,  s->chunk_fastest, s->u,          s->v,           s->f_before,
@@ -151,7 +155,7 @@ static void change_suddenly(const sn_net *net, sn_state *s) {
 }
 
 // at rest, but for what is prescribed at the state's time
-static void put_to_rest(const sn_net *net, sn_state *s) {
+void sn_state_rest(const sn_net *net, sn_state *s) {
     const size_t nodes = (size_t)net->nodes, size = real_size(s->precision);
     memset(s->u, 0, nodes * 4 * size);
     memset(s->v, 0, nodes * 4 * size);
@@ -174,6 +178,7 @@ static void put_to_rest(const sn_net *net, sn_state *s) {
     s->crushed = false;
     change_suddenly(net, s);
     memcpy(s->f_before, s->now.f, nodes * 4 * size);
+    if (s->implicit) sn_implicit_reset(net, s->implicit);
 }
 
 void sn_state_reset(const sn_net *net, sn_state *s) {
@@ -183,7 +188,7 @@ void sn_state_reset(const sn_net *net, sn_state *s) {
     s->broken = false;
     s->damped_energy = 0;
     sn_state_clear_imposed(net, s);
-    put_to_rest(net, s);
+    sn_state_rest(net, s);
 }
 
 //---- damping -------------------------------------------------------------------------------------
@@ -259,11 +264,23 @@ static double kinetic(const sn_net *net, const sn_state *s) {
     return sum;
 }
 
-// before the kick, so that what it takes can be counted
+// v += the kick of half a step by the present forces, but of nodes that tools hold
+static void half_kick(const sn_net *net, sn_state *s, double half) {
+    for (size_t k = 0; k < 4 * (size_t)net->nodes; k++) {
+        if (s->grip[k / 4].tool >= 0) continue;
+        double a = sn_real_at(s->precision, s->now.f, k) *
+                   sn_real_at(s->precision, net->data[s->precision].inverse_mass, k);
+        sn_real_put(s->precision, s->v, k, sn_real_at(s->precision, s->v, k) + half * a);
+    }
+}
+
+// on the velocity at the time of u, between the halves of the kick: second order (but for a term of
+// damping^2 h where supports hold part of the rigid motion), and what it takes can be counted
 static void damp(const sn_net *net, sn_state *s, double h) {
     rigid_motion move;
+    half_kick(net, s, 0.5 * s->last_step);
     find_rigid(net, s, &move);
-    const double keep = exp(-net->damping * h);
+    const double keep = exp(-0.5 * net->damping * (s->last_step + h));
     double before = kinetic(net, s);
     for (int i = 0; i < net->nodes; i++) {
         double r[3];
@@ -280,6 +297,7 @@ static void damp(const sn_net *net, sn_state *s, double h) {
         }
     }
     s->damped_energy += before - kinetic(net, s);
+    half_kick(net, s, -0.5 * s->last_step);
 }
 
 //---- steps ---------------------------------------------------------------------------------------
@@ -375,7 +393,11 @@ static bool forces_are_finite(const sn_net *net, const sn_state *s) {
 }
 
 sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
-    SN_ASSERT(net->integrator == SN_INTEGRATOR_EXPLICIT && dt > 0);
+    SN_ASSERT(net->integrator != SN_INTEGRATOR_QUASI_STATIC && dt > 0);
+    if (net->integrator == SN_INTEGRATOR_IMPLICIT) {
+        sn_implicit_advance(net, s, dt);
+        return (sn_step_info){s->time, s->last_step, s->warnings};
+    }
     double limit = SN_STEP_SAFETY * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
     double h = fmin(dt, net->asked_step > 0 ? fmin(net->asked_step, limit) : limit);
     if (net->asked_step > limit) s->warnings++;
@@ -403,7 +425,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     if (!isfinite(sum) || lost || (wild && !forces_are_finite(net, s))) {
         s->broken = true;
         s->warnings++;
-        put_to_rest(net, s);
+        sn_state_rest(net, s);
         return (sn_step_info){s->time, h, s->warnings};
     }
     s->moved += h * fastest;

@@ -352,6 +352,28 @@ void sn_tangent_add(sn_tangent *t, int node, const double block[9]) {
     for (int k = 0; k < 9; k++) to[k] += block[k];
 }
 
+// conjugate gradients want the symmetric part, which is all of it but for friction
+void sn_tangent_add_contact(void *context, int node, const double block[9]) {
+    double symmetric[9];
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            symmetric[3 * i + j] = 0.5 * (block[3 * i + j] + block[3 * j + i]);
+    sn_tangent_add(context, node, symmetric);
+}
+
+void sn_tangent_add_mass(const sn_net *net, sn_tangent *t, double factor) {
+    for (int i = 0; i < net->nodes; i++) {
+        double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, i, i);
+        for (int d = 0; d < 3; d++) to[4 * d] += factor * net->mass[i];
+    }
+}
+
+void sn_tangent_lower(sn_tangent *t, int count, const double *vectors, double factor) {
+    t->lowered = count;
+    t->lower = vectors;
+    t->lower_factor = factor;
+}
+
 // inverse of a symmetric 3 x 3 block; a diagonal one where it is not positive definite
 static void invert(const double A[9], double out[9]) {
     double c[9], det;
@@ -390,6 +412,12 @@ void sn_tangent_prepare(const sn_net *net, sn_tangent *t) {
     }
 }
 
+static double dot(const double *a, const double *b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
 void sn_tangent_multiply(const sn_net *net, sn_tangent *t, const double *x, double *y) {
     for (int i = 0; i < net->nodes; i++) {
         double a = 0, b = 0, c = 0;
@@ -416,15 +444,14 @@ void sn_tangent_multiply(const sn_net *net, sn_tangent *t, const double *x, doub
             for (int d = 0; d < 3; d++) v[d] += sum * b[d];
         }
     }
+    const size_t n = (size_t)net->nodes * 3;
+    for (int k = 0; k < t->lowered; k++) {
+        const double *b = t->lower + (size_t)k * n, off = t->lower_factor * dot(b, x, n);
+        for (size_t i = 0; i < n; i++) y[i] -= off * b[i];
+    }
 }
 
 //---- solver --------------------------------------------------------------------------------------
-
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
 
 static void hold(const sn_net *net, double *x) {
     for (int k = 0; k < net->fixed_count; k++)

@@ -12,13 +12,16 @@ typedef struct sn_sparsity {
 } sn_sparsity;
 
 struct sn_tangent {
-    sn_sparsity cells;          // nodes by nodes
-    double *block;              // 3 x 3 blocks
-    sn_sparsity points;         // volume points by nodes
-    double *flux;               // b: 3 numbers an entry
-    double *stiffness;          // alpha K / V of each point
-    double *inverse;            // of the diagonal blocks
-    double *along;              // scratch of the points
+    sn_sparsity cells;  // nodes by nodes
+    double *block;      // 3 x 3 blocks
+    sn_sparsity points; // volume points by nodes
+    double *flux;       // b: 3 numbers an entry
+    double *stiffness;  // alpha K / V of each point
+    double *inverse;    // of the diagonal blocks
+    double *along;      // scratch of the points
+    int lowered;        // vectors taken off
+    const double *lower;
+    double lower_factor;
     double *r, *z, *p, *q;      // scratch of the solver
     struct sn_cluster *cluster; // scratch of the smoothed edges
 };

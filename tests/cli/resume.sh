@@ -21,7 +21,7 @@ YAML
 
 # what must come out the same: all but wall times
 same() { # same DIR
-    for file in whole/history.csv whole/fields*; do
+    for file in whole/history.csv whole/energy.csv whole/fields*; do
         cmp "$file" "$1/${file#whole/}" || die "$1/${file#whole/} differs"
     done
     for folder in whole "$1"; do

@@ -18,8 +18,10 @@ static const char valid[] =
     "         path: [[0 s, 0 mm, 0 mm, 0 mm], [1 s, 0 mm, 1 mm, -10 mm]]}]\n"
     "probes: [{name: tip, point: [5 mm, 5 mm, 5 mm]}, {name: pull, reaction: top}]\n"
     "time: {until: 2 s, output_every: 50 ms}\n"
-    "springs: {model: smoothed, volume: false, integrator: implicit, step: 0.1 ms,\n"
-    "          precision: double, threads: 2, damping: 3 1/s, memory_tolerance: 0.01}\n"
+    "springs: {model: smoothed, volume: false, integrator: implicit, scheme: backward-euler, step: "
+    "0.1 ms,\n"
+    "          precision: double, threads: 2, damping: {mass: 3 1/s, stiffness: 2 ms}, "
+    "memory_tolerance: 0.01}\n"
     "continuum: {element: P1, analysis: dynamic, steps: 7, tolerance: 1e-6, memory_tolerance: 1 "
     "%}\n";
 
@@ -136,6 +138,8 @@ static void example_of_the_manual(void **state) {
     assert_true(s->integrator == SN_INTEGRATOR_IMPLICIT && s->threads == 2);
     CHECK_ABS(s->step, 1e-4, 0.0);
     CHECK_ABS(s->damping, 3.0, 0.0);
+    CHECK_ABS(s->stiffness_damping, 2e-3, 1e-18);
+    assert_int_equal(s->scheme, SN_SCHEME_BACKWARD_EULER);
     CHECK_ABS(s->memory_tolerance, 0.01, 0.0);
     const sn_continuum_def *f = &c->continuum;
     assert_true(f->element == SN_ELEMENT_P1 && f->analysis == SN_ANALYSIS_DYNAMIC);
@@ -462,6 +466,11 @@ static void bad_settings_are_refused(void **state) {
         {SPRINGS("threads: 0"), SN_E_RANGE, "from 1 to 1024", NULL},
         {SPRINGS("threads: 2000000000"), SN_E_RANGE, "from 1 to 1024", NULL},
         {SPRINGS("damping: -1 1/s"), SN_E_RANGE, "key \"springs.damping\"", NULL},
+        {SPRINGS("damping: {stiffness: -1 ms}"), SN_E_RANGE, "key \"springs.damping.stiffness\"",
+         NULL},
+        {SPRINGS("damping: {mass: 1 s}"), SN_E_UNIT, "key \"springs.damping.mass\"", NULL},
+        {SPRINGS("damping: {stifness: 1 ms}"), SN_E_KEY, "stiffness", NULL},
+        {SPRINGS("scheme: bdf3"), SN_E_NAME, "bdf2", NULL},
         {SPRINGS("damping: 0.1"), SN_E_UNIT, "a rate such as", NULL},
         {SPRINGS("memory_tolerance: 0"), SN_E_RANGE, "less than 1", NULL},
         {CONTINUUM("element: p1"), SN_E_NAME, "did you mean \"P1\"?", NULL},

@@ -399,8 +399,6 @@ static void refusals_name_the_reason(void **state) {
     CHECK_OK(sn_net_create(c, &net));
     sn_net_destroy(net);
     c->springs.rung = SN_RUNG_COUPLED;
-    c->springs.integrator = SN_INTEGRATOR_IMPLICIT;
-    CHECK_FAILS(sn_net_create(c, &net), SN_E_UNSUPPORTED, "implicit");
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     CHECK_FAILS(sn_net_create(c, &net), SN_E_DEFINITION, "equilibrium");
     c->load = sn_alloc(1, sizeof *c->load);

@@ -248,7 +248,7 @@ static void pressure_is_averaged(void **state) {
             want[net->node_name[net->point_node[p]]] = in[p];
         }
         const sn_moment m = {.precision = SN_DOUBLE, .u = u, .pressure = in};
-        const sn_output output = {&got, keep_pressure, NULL};
+        const sn_output output = {.context = &got, .frame = keep_pressure};
         sn_fields_fill(net, fields, &m);
         CHECK_OK(sn_fields_emit(fields, 0, &output));
         int inner = 0;

@@ -117,18 +117,22 @@ static void without_wall(sn_run_summary *s) {
 // Stopped after each of its outputs in turn, a run ends with the same bits.
 static void runs_go_on_where_they_were(void **state) {
     (void)state;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         sn_case *c =
             some_case(k == 1 ? SN_SINGLE : SN_DOUBLE, k == 1 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED);
-        if (k == 2) c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
+        if (k >= 2)
+            c->springs.integrator = k == 2 ? SN_INTEGRATOR_QUASI_STATIC : SN_INTEGRATOR_IMPLICIT;
+        if (k == 3) c->springs.damping = 5;
         c->tool[0].grasp[0] = k == 0 ? 0.07 : 0;
         c->tool[0].grasp[1] = k == 0 ? 0.12 : 0;
         add_probe(c, "foot", SN_PROBE_REACTION, "bottom", 0, 0, 0);
         keeper whole = {.nodes = c->mesh->node_count, .cells = c->mesh->cell_count};
-        sn_output output = {&whole, take_frame, NULL};
+        sn_output output = {.context = &whole, .frame = take_frame};
         sn_run_summary first, second;
-        sn_record *a, *b;
+        sn_record *a, *b, *e, *f;
         CHECK_OK(sn_record_create("a", &a));
+        CHECK_OK(sn_record_create("e", &e));
+        output.energy = e;
         CHECK_OK(sn_springs_run(c, &output, &first, a));
         assert_true(first.converged);
         assert_int_equal(a->rows, 5);
@@ -138,9 +142,14 @@ static void runs_go_on_where_they_were(void **state) {
             output.context = &part;
             sn_restart point = {.context = &part, .save = keep};
             CHECK_OK(sn_record_create("b", &b));
+            CHECK_OK(sn_record_create("f", &f));
+            output.energy = f;
             CHECK_FAILS(sn_springs_resume(c, &output, &point, &second, b), SN_E_STOPPED, "killed");
             sn_record_destroy(b);
+            sn_record_destroy(f);
             CHECK_OK(sn_record_create("b", &b));
+            CHECK_OK(sn_record_create("f", &f));
+            output.energy = f;
             part.frames = 0;
             unsigned char *from = malloc(part.size);
             memcpy(from, part.bytes, part.size);
@@ -153,6 +162,11 @@ static void runs_go_on_where_they_were(void **state) {
             for (int col = 0; col < a->series_count; col++)
                 assert_memory_equal(a->series[col].value, b->series[col].value,
                                     (size_t)a->rows * sizeof(double));
+            assert_int_equal(e->series_count, 7);
+            assert_int_equal(f->rows, a->rows);
+            for (int col = 0; col < e->series_count; col++)
+                assert_memory_equal(e->series[col].value, f->series[col].value,
+                                    (size_t)e->rows * sizeof(double));
             sn_run_summary plain = first;
             without_wall(&plain);
             without_wall(&second);
@@ -169,9 +183,11 @@ static void runs_go_on_where_they_were(void **state) {
                         "another net");
             c->until = 0.2;
             sn_record_destroy(b);
+            sn_record_destroy(f);
             free(part.bytes);
             free(from);
         }
+        sn_record_destroy(e);
         sn_record_destroy(a);
         sn_case_destroy(c);
     }

@@ -150,7 +150,7 @@ static void run_numbered(int kind, const int *to, last_frame *last, double *posi
     last->nodes = c->mesh->node_count;
     last->cells = c->mesh->cell_count;
     add_probe(c, "corner", SN_PROBE_POINT, NULL, 0.031, 0.013, 0.024);
-    sn_output output = {last, keep_frame, NULL};
+    sn_output output = {.context = last, .frame = keep_frame};
     sn_run_summary summary;
     sn_record *history;
     CHECK_OK(sn_record_create("run", &history));

@@ -1,0 +1,161 @@
+// What the memory of a net has stored.
+// SPDX-License-Identifier: Apache-2.0
+//
+// A branch of modulus g holds the stress H; q = H/g obeys q' = T' - q/tau. It is a spring of the
+// instantaneous law, scaled by g, between the strain e and a strain e_v that creeps after it, whose
+// stress is T(e_v) = T - q. It has stored
+//     R = g (W(e) - W(e_v) - T(e_v) (e - e_v)),
+// with R' = H e' - g q/tau (e - e_v): the work done on the branch less a loss that is never below
+// zero where T rises with e. Linear: R = H^2 / (2 g k). Springs and volume stresses are taken so,
+// without approximation; six components of a cell (or a smoothed edge) by the linear form with the
+// tangent D of the law (and of a volume term) at the present strain, R = g/2 q . D^-1 q. A viscous
+// part stores nothing.
+#include <math.h>
+
+#include "springs/net.h"
+
+/// The memory of one kind of item of a region.
+typedef struct branches {
+    const sn_moment *moment;
+    const sn_exponentials *memory;
+    size_t first, count; ///< in the store: first number, numbers of a block and branch
+    size_t all;          ///< branches in the store, the viscous part too
+} branches;
+
+// T for k = 0, else H of branch k - 1, of number i of a block
+static double stored(const branches *b, size_t block, size_t k, size_t i) {
+    return sn_real_at(b->moment->precision, b->moment->store,
+                      b->first + (block * (1 + b->all) + k) * b->count + i);
+}
+
+//---- springs -------------------------------------------------------------------------------------
+
+// stretch at which the law gives t
+static double stretch_of(double B, double t) {
+    if (t >= 0) return 1.0 + (fabs(B) < 1e-12 ? t : log1p(B * t) / B);
+    double x = 1.0; // of x^3 - 3 t x^2 - 1, convex and rising above its root
+    for (int turn = 0; turn < 60; turn++) {
+        double step = (x * x * (x - 3.0 * t) - 1.0) / (3.0 * x * (x - 2.0 * t));
+        x -= step;
+        if (fabs(step) < 1e-15 * x) break;
+    }
+    return x;
+}
+
+// energy over stiffness and squared rest length
+static double potential(double B, double lambda) {
+    const double y = lambda - 1.0;
+    if (y < 0) return (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
+    if (fabs(B * y) < 1e-5) return y * y * (0.5 + B * y / 6.0);
+    return (expm1(B * y) / B - y) / B;
+}
+
+static double of_springs(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
+    const branches b = {m, &region->memory, region->spring_store, SN_BLOCK,
+                        (size_t)region->branches};
+    const double *stiffness = net->data[SN_DOUBLE].stiffness;
+    const double *inverse = net->data[SN_DOUBLE].inverse, B = region->exponent;
+    double sum = 0;
+    for (size_t n = 0; n < (size_t)region->spring_blocks * SN_BLOCK; n++) {
+        const size_t slot = (size_t)region->spring_block * SN_BLOCK + n;
+        const size_t block = n / SN_BLOCK, lane = n % SN_BLOCK;
+        if (!(stiffness[slot] > 0)) continue;
+        const double T = stored(&b, block, 0, lane), lambda = stretch_of(B, T);
+        const double now = potential(B, lambda);
+        for (int k = 0; k < b.memory->terms; k++) {
+            const double g = b.memory->g[k];
+            const double t = T - stored(&b, block, (size_t)k + 1, lane) / g, v = stretch_of(B, t);
+            double held = now - potential(B, v) - t * (lambda - v);
+            sum += g * stiffness[slot] / inverse[slot] * fmax(held, 0.0); // rounding
+        }
+    }
+    return sum;
+}
+
+//---- volume points and cells ---------------------------------------------------------------------
+
+static double of_points(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
+    const branches b = {m, &region->memory, region->point_store, SN_BLOCK,
+                        (size_t)region->branches};
+    double sum = 0;
+    for (size_t n = 0; region->bulk > 0 && n < (size_t)region->point_blocks * SN_BLOCK; n++) {
+        const double V = net->point_volume[(size_t)region->point_block * SN_BLOCK + n];
+        for (int k = 0; k < b.memory->terms; k++) {
+            double H = stored(&b, n / SN_BLOCK, (size_t)k + 1, n % SN_BLOCK);
+            sum += V * H * H / (2.0 * b.memory->g[k] * region->bulk);
+        }
+    }
+    return sum;
+}
+
+// q . (D + bulk 1 1)^-1 q by conjugate gradients. D of the law alone resists no change of volume,
+// and of q only rounding and squares of strains want one: bulk keeps them small
+static double compliance(const double D[21], double bulk, const double q[6]) {
+    double x[6] = {0}, r[6], p[6], rr = 0, sum = 0;
+    for (int i = 0; i < 6; i++) {
+        r[i] = p[i] = q[i];
+        rr += q[i] * q[i];
+    }
+    const double least = 1e-20 * rr;
+    for (int turn = 0; turn < 12 && rr > least; turn++) {
+        double y[6] = {0}, py = 0, next = 0;
+        for (int i = 0, k = 0; i < 6; i++)
+            for (int j = i; j < 6; j++, k++) {
+                y[i] += D[k] * p[j];
+                if (j > i) y[j] += D[k] * p[i];
+            }
+        for (int i = 0; i < 3; i++) y[i] += bulk * (p[0] + p[1] + p[2]);
+        for (int i = 0; i < 6; i++) py += p[i] * y[i];
+        if (!(py > 0)) break;
+        for (int i = 0; i < 6; i++) {
+            x[i] += rr / py * p[i];
+            r[i] -= rr / py * y[i];
+            next += r[i] * r[i];
+        }
+        for (int i = 0; i < 6; i++) p[i] = r[i] + next / rr * p[i];
+        rr = next;
+    }
+    for (int i = 0; i < 6; i++) sum += q[i] * x[i];
+    return fmax(sum, 0.0);
+}
+
+static double of_cells(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
+    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
+    const branches b = {m, &region->memory, region->cell_store, components * SN_BLOCK,
+                        (size_t)region->branches};
+    const sn_tissue *t = &region->tissue;
+    double sum = 0;
+    for (size_t n = 0; n < (size_t)sn_region_law_blocks(net, region) * SN_BLOCK; n++) {
+        const size_t slot = (size_t)sn_region_law_block(net, region) * SN_BLOCK + n;
+        const size_t block = n / SN_BLOCK, lane = n % SN_BLOCK;
+        double E[6], S[6], D[21];
+        const double V = sn_net_law_strain(net, m, (int)slot, E);
+        if (!(V > 0)) continue;
+        sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, D);
+        for (int k = 0; k < b.memory->terms; k++) {
+            const double g = b.memory->g[k];
+            double q[6], twice;
+            for (size_t c = 0; c < 6; c++)
+                q[c] = stored(&b, block, (size_t)k + 1, c * SN_BLOCK + lane) / g;
+            twice = compliance(D, region->bulk + region->shear, q);
+            if (components == 7 && region->bulk > 0) {
+                double p = stored(&b, block, (size_t)k + 1, 6 * SN_BLOCK + lane) / g;
+                twice += p * p / region->bulk;
+            }
+            sum += 0.5 * g * V * twice;
+        }
+    }
+    return sum;
+}
+
+double sn_net_memory_energy(const sn_net *net, const sn_moment *m) {
+    double sum = 0;
+    for (int r = 0; r < net->region_count; r++) {
+        const sn_net_region *region = &net->region[r];
+        if (region->memory.terms == 0) continue;
+        if (net->rung == SN_RUNG_CENTRAL) sum += of_springs(net, region, m);
+        if (net->rung != SN_RUNG_CENTRAL) sum += of_cells(net, region, m);
+        if (net->volume) sum += of_points(net, region, m);
+    }
+    return sum;
+}
