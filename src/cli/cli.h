@@ -70,6 +70,11 @@ int cli_unknown(const char *what, const char *word, const char *const *names, in
 
 /// sinew bench fit (bench_fit.c).
 int cli_bench_fit(const cli_arguments *arguments);
+/// G(t) of a memory beside the exponentials that stand for it, over their band (memory_plots.c).
+void cli_relaxation_plot(sn_report *report, const sn_memory *memory, const sn_exponentials *e);
+/// Weights of the exponentials at their times, as bars.
+void cli_spectrum_plot(sn_report *report, const sn_exponentials *e);
+
 /// What `sinew bench continuum` is to measure.
 typedef struct cli_bench_choice {
     const char *element; ///< NULL: all

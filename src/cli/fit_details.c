@@ -185,19 +185,6 @@ void fit_details_page(sn_report *report, const fit_outcome *o) {
 
 //---- plots ---------------------------------------------------------------------------------------
 
-static void spectrum_plot(sn_report *report, const sn_exponentials *e) {
-    sn_line line = {"g", SN_BARS, 2, e->terms, e->tau, e->g};
-    char caption[128];
-    snprintf(caption, sizeof caption, "What never relaxes: g = %.4g.", e->g_inf);
-    sn_report_plot(report, &(sn_plot){.title = "Spectrum: weights of the exponentials",
-                                      .x_label = "relaxation time [s]",
-                                      .y_label = "g [1]",
-                                      .caption = caption,
-                                      .log_x = true,
-                                      .line_count = 1,
-                                      .line = &line});
-}
-
 // least-squares slope of y over x
 static double slope_of(int n, const double *x, const double *y) {
     double mx = 0, my = 0, xx = 0, xy = 0;
@@ -270,6 +257,6 @@ static void slope_plot(sn_report *report, const fit_outcome *o) {
 }
 
 void fit_details_plots(sn_report *report, const fit_outcome *o, const sn_exponentials *memory) {
-    if (memory && memory->terms > 0) spectrum_plot(report, memory);
+    if (memory && memory->terms > 0) cli_spectrum_plot(report, memory);
     if (strcmp(o->fit->tissue.law->name, "exponential") == 0) slope_plot(report, o);
 }

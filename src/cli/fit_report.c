@@ -427,33 +427,11 @@ static void residual_plot(sn_report *report, const fit_outcome *o) {
     sn_free(residual);
 }
 
-#define G_POINTS 200
-
 static void memory_plot(sn_report *report, const fit_outcome *o) {
     const sn_memory *memory = &o->fit->tissue.memory;
     sn_exponentials e;
     if (memory->law->param_count == 0 || !compress(o, &e)) return;
-    double t[G_POINTS], exact[G_POINTS], sum[G_POINTS];
-    for (int i = 0; i < G_POINTS; i++) {
-        t[i] = e.t_min * pow(e.t_max / e.t_min, i / (G_POINTS - 1.0));
-        exact[i] = sn_memory_relaxation(memory, t[i]);
-        sum[i] = sn_exponentials_at(&e, t[i]);
-    }
-    char label[64], caption[256];
-    snprintf(label, sizeof label, "%d exponentials", e.terms);
-    snprintf(caption, sizeof caption,
-             "The memory and the %d exponentials that the engines carry: largest error %.2g of "
-             "G(0) from %s to %s.",
-             e.terms, e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
-    sn_line line[] = {{memory->law->name, SN_LINE, 0, G_POINTS, t, exact},
-                      {label, SN_DASHED, 1, G_POINTS, t, sum}};
-    sn_report_plot(report, &(sn_plot){.title = "Reduced relaxation function",
-                                      .x_label = "time [s]",
-                                      .y_label = "G [1]",
-                                      .caption = caption,
-                                      .log_x = true,
-                                      .line_count = 2,
-                                      .line = line});
+    cli_relaxation_plot(report, memory, &e);
 }
 
 sn_status fit_report(const char *path, const fit_outcome *o) {

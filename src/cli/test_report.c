@@ -6,7 +6,7 @@
 
 #include "cli/test.h"
 
-enum { LINES_MAX = 4, G_POINTS = 200, TABLE_ROWS = 40, CELL = 200 };
+enum { LINES_MAX = 4, TABLE_ROWS = 40, CELL = 200 };
 
 static const double *column(const test_outcome *o, const char *name) {
     return sn_record_values(o->record, name);
@@ -307,34 +307,8 @@ static void part_plots(sn_report *report, const test_outcome *o, sn_part part) {
                        "stress.",
                        cli_show(e.viscous, "s"));
     if (e.terms == 0) return;
-    double t[G_POINTS], exact[G_POINTS], sum[G_POINTS];
-    for (int i = 0; i < G_POINTS; i++) {
-        t[i] = e.t_min * pow(e.t_max / e.t_min, i / (G_POINTS - 1.0));
-        exact[i] = sn_memory_relaxation(memory, t[i]);
-        sum[i] = sn_exponentials_at(&e, t[i]);
-    }
-    char label[64], caption[256];
-    snprintf(label, sizeof label, "%d exponential%s", e.terms, e.terms == 1 ? "" : "s");
-    sn_line line[] = {{memory->law->name, SN_LINE, 0, G_POINTS, t, exact},
-                      {label, SN_DASHED, 1, G_POINTS, t, sum}};
-    sn_report_plot(report, &(sn_plot){.title = "Reduced relaxation function",
-                                      .x_label = "time [s]",
-                                      .y_label = "G [1]",
-                                      .log_x = true,
-                                      .line_count = 2,
-                                      .line = line});
-    snprintf(caption, sizeof caption,
-             "Weights g of the %s that carry the memory at their times, and what never relaxes, "
-             "%.4g: largest error %.2g of G(0) from %s to %s.",
-             label, e.g_inf, e.max_error, cli_show(e.t_min, "s"), cli_show(e.t_max, "s"));
-    sn_line bars = {NULL, SN_BARS, 2, e.terms, e.tau, e.g};
-    sn_report_plot(report, &(sn_plot){.title = "Spectrum",
-                                      .x_label = "relaxation time [s]",
-                                      .y_label = "weight g [1]",
-                                      .caption = caption,
-                                      .log_x = true,
-                                      .line_count = 1,
-                                      .line = &bars});
+    cli_relaxation_plot(report, memory, &e);
+    cli_spectrum_plot(report, &e);
 }
 
 // a table in the making: name, value, meaning

@@ -23,7 +23,7 @@ done
 [ "$(grep -c '"weight": ' fit.json)" = 2 ] || die "expected two weights"
 holds "$(grep '"weight": ' fit.json | sed -n '2s/[^0-9.]//gp') > 2"
 for text in "Number of terms" "Percentiles of" "Correlation of the constants" "Durbin-Watson" \
-    "Slope against stress" "Spectrum: weights"; do
+    "Slope against stress" "Weights of the exponentials"; do
     sed "s/&#39;/'/g" out/report.html | grep -qF -- "$text" || die "the page does not show \"$text\""
 done
 # the same seed gives the same bits
