@@ -198,9 +198,11 @@ json_t *fit_json(const fit_outcome *o) {
 
 void fit_print(const fit_outcome *o) {
     const sn_fit_result *f = o->fit;
-    printf("%s x %s, %d curves, %d points: R2 %.4f, rms error %s (%.2f %% of the largest stress)\n",
-           f->tissue.law->name, f->tissue.memory.law->name, o->data->count, f->points, f->r_squared,
-           cli_show(f->rmse, "Pa"), 100 * f->nrmse);
+    printf(
+        "%s x %s, %d curve%s, %d points: R2 %.4f, rms error %s (%.2f %% of the largest stress)\n",
+        f->tissue.law->name, f->tissue.memory.law->name, o->data->count,
+        o->data->count == 1 ? "" : "s", f->points, f->r_squared, cli_show(f->rmse, "Pa"),
+        100 * f->nrmse);
     for (int k = 0; k < f->param_count; k++) {
         const sn_fit_param *p = &f->param[k];
         printf("  %-10s %-14s", p->name, shown_value(p));
@@ -442,10 +444,10 @@ sn_status fit_report(const char *path, const fit_outcome *o) {
              f->tissue.memory.law->name);
     SN_TRY(sn_report_create(title, &report));
     sn_report_text(report,
-                   "%d curves, %d points, fitted together through their recorded histories: R2 = "
+                   "%d curve%s, %d points, fitted together through their recorded histories: R2 = "
                    "1 - SSE/SST = %.4f, rms error %s (%.2f %% of the largest stress), AICc %.1f.",
-                   o->data->count, f->points, f->r_squared, cli_show(f->rmse, "Pa"), 100 * f->nrmse,
-                   f->aicc);
+                   o->data->count, o->data->count == 1 ? "" : "s", f->points, f->r_squared,
+                   cli_show(f->rmse, "Pa"), 100 * f->nrmse, f->aicc);
     if (!f->converged) sn_report_text(report, "The search did not converge: %s", f->reason);
     parameter_table(report, f);
     misses(report, o);
