@@ -154,6 +154,8 @@ typedef struct sn_history {
 /// Copies `count` knots. @return SN_OK, SN_E_DATA (not finite, not rising, none), SN_E_MEMORY.
 SN_API sn_status sn_history_create(int channels, int count, const double *time, const double *value,
                                    sn_history **history);
+/// An equal history; NULL of NULL. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_history_copy(const sn_history *history, sn_history **copy);
 SN_API void sn_history_destroy(sn_history *history); // NULL is allowed
 /// Values at time t by linear interpolation, `channels` of them. NULL history: 1 for one channel.
 SN_API void sn_history_at(const sn_history *history, double t, double *value);

@@ -33,6 +33,12 @@ sn_status sn_history_create(int channels, int count, const double *time, const d
     return SN_OK;
 }
 
+sn_status sn_history_copy(const sn_history *h, sn_history **copy) {
+    *copy = NULL;
+    if (!h) return SN_OK;
+    return sn_history_create(h->channels, h->count, h->time, h->value, copy);
+}
+
 void sn_history_destroy(sn_history *history) {
     if (!history) return;
     sn_free(history->time);

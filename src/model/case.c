@@ -48,12 +48,6 @@ void sn_case_destroy(sn_case *c) {
     sn_free(c);
 }
 
-static sn_status copy_history(const sn_history *from, sn_history **to) {
-    *to = NULL;
-    if (!from) return SN_OK;
-    return sn_history_create(from->channels, from->count, from->time, from->value, to);
-}
-
 // A copy of an array that holds no pointers of its own; NULL when there is no memory.
 static void *copy_array(const void *from, int count, size_t size) {
     void *to = sn_alloc((size_t)count, size);
@@ -68,7 +62,7 @@ static sn_status copy_loads_and_tools(const sn_case *c, sn_case *to) {
     for (int i = 0; i < c->load_count; i++) {
         to->load[i] = c->load[i];
         to->load_count = i + 1;
-        SN_TRY(copy_history(c->load[i].factor, &to->load[i].factor));
+        SN_TRY(sn_history_copy(c->load[i].factor, &to->load[i].factor));
     }
     for (int i = 0; i < c->tool_count; i++) {
         SN_TRY(sn_tool_copy(&c->tool[i], &to->tool[i]));

@@ -8,18 +8,13 @@
 
 //---- owning --------------------------------------------------------------------------------------
 
-static sn_status copy_history(const sn_history *from, sn_history **to) {
-    if (!from) return SN_OK;
-    return sn_history_create(from->channels, from->count, from->time, from->value, to);
-}
-
 sn_status sn_tool_copy(const sn_tool *tool, sn_tool *copy) {
     *copy = *tool;
     copy->path = copy->turn = NULL;
     copy->surface = NULL;
     sn_status status;
-    SN_TRY_GOTO(status, copy_history(tool->path, &copy->path));
-    SN_TRY_GOTO(status, copy_history(tool->turn, &copy->turn));
+    SN_TRY_GOTO(status, sn_history_copy(tool->path, &copy->path));
+    SN_TRY_GOTO(status, sn_history_copy(tool->turn, &copy->turn));
     if (tool->surface) SN_TRY_GOTO(status, sn_tool_surface_copy(tool->surface, &copy->surface));
     return SN_OK;
 fail:

@@ -5,12 +5,6 @@
 
 #include "springs/net.h"
 
-static sn_status copy_history(const sn_history *from, sn_history **to) {
-    *to = NULL;
-    if (!from) return SN_OK;
-    return sn_history_create(from->channels, from->count, from->time, from->value, to);
-}
-
 //---- building ------------------------------------------------------------------------------------
 
 // what prescribes each direction: 0 nothing, 1 a support, 2 + k displacement load k; the last wins,
@@ -31,7 +25,7 @@ static sn_status build_fixed(const sn_case *c, sn_net *net) {
     for (int l = 0; l < c->load_count; l++) {
         const sn_load *load = &c->load[l];
         if (load->kind != SN_LOAD_DISPLACEMENT) continue;
-        if (copy_history(load->factor, &net->factor[l]) != SN_OK) goto memory;
+        if (sn_history_copy(load->factor, &net->factor[l]) != SN_OK) goto memory;
         for (int d = 0; d < 3; d++)
             if (!load->free[d]) mark(&c->mesh->surface[load->surface], d, 2 + l, owner);
     }
@@ -117,7 +111,7 @@ static sn_status build_loads(const sn_case *c, sn_net *net, double *area) {
         out->name = l;
         out->kind = load->kind;
         out->pressure = load->pressure;
-        SN_TRY(copy_history(load->factor, &out->factor));
+        SN_TRY(sn_history_copy(load->factor, &out->factor));
         if (load->kind == SN_LOAD_TRACTION) {
             SN_TRY(build_traction(c, load, area, out));
             continue;

@@ -129,6 +129,7 @@ static void histories(void **state) {
     CHECK_OK(sn_history_create(2, 3, time, value, &h));
     double v[2];
     sn_history_at(h, 0.75, v);
+    double first[2] = {v[0], v[1]}, again[2];
     CHECK_ABS(v[0], 3.0, 1e-15); // a third of the way
     CHECK_ABS(v[1], 1.0 / 3, 1e-15);
     sn_history_at(h, -1, v);
@@ -140,7 +141,14 @@ static void histories(void **state) {
     assert_true(sn_history_next(h, 0.5) == 1.25);
     assert_true(sn_history_next(h, 0.1) == 0.5);
     assert_true(isinf(sn_history_next(h, 4)));
+    sn_history *copy;
+    CHECK_OK(sn_history_copy(h, &copy));
     sn_history_destroy(h);
+    sn_history_at(copy, 0.75, again);
+    assert_memory_equal(again, first, sizeof first);
+    sn_history_destroy(copy);
+    CHECK_OK(sn_history_copy(NULL, &copy));
+    assert_null(copy);
     CHECK_FAILS(sn_history_create(1, 2, (double[]){1, 1}, value, &h), SN_E_DATA, "must rise");
     CHECK_FAILS(sn_history_create(1, 2, time, (double[]){1, NAN}, &h), SN_E_DATA, "finite");
     CHECK_FAILS(sn_history_create(1, 0, time, value, &h), SN_E_DATA, "knot");
