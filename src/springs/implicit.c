@@ -255,12 +255,11 @@ static void find_ext(const sn_net *net, sn_state *s, sn_implicit *im, sn_tangent
 }
 
 // all forces at s->u in now.f; b <- residual of the free directions, `residual` its norm
-static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im, sn_memory_mode mode) {
+static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im) {
     const sn_force_call call = {.precision = SN_DOUBLE,
-                                .mode = mode,
+                                .mode = SN_MEMORY_TRIAL,
                                 .u = s->u,
-                                .factors = mode == SN_MEMORY_TRIAL ? im->trial : s->factors,
-                                .store = s->store,
+                                .factors = im->trial,
                                 .history = im->history,
                                 .out = &s->now,
                                 .team = s->team};
@@ -268,7 +267,7 @@ static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im, sn_me
     move_along(net, s, im);
     sn_net_forces(net, &call);
     if (net->loaded_count > 0) find_ext(net, s, im, NULL);
-    sn_state_add_pushes(net, s);
+    sn_state_add_pushes(s);
     find_drag(net, s, im);
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
@@ -295,7 +294,7 @@ static bool try_place(const sn_net *net, sn_state *s, sn_implicit *im) {
         im->smallest = sn_net_smallest_ratio(net, s->u);
         if (!(im->smallest > 0)) return false;
     }
-    find_residual(net, s, im, SN_MEMORY_TRIAL);
+    find_residual(net, s, im);
     return isfinite(im->residual);
 }
 
@@ -395,7 +394,7 @@ static bool correct(const sn_net *net, sn_state *s, sn_implicit *im) {
         if (try_place(net, s, im) && im->residual < (1.0 - 1e-3 * part) * before) return true;
     }
     place(net, s, im, 0.0);
-    find_residual(net, s, im, SN_MEMORY_TRIAL);
+    find_residual(net, s, im);
     return false;
 }
 
@@ -440,13 +439,22 @@ static void begin(const sn_net *net, sn_state *s, sn_implicit *im, double h) {
     if (net->store_size > 0) sn_net_history(net, im->trial, s->store, im->history);
 }
 
+// moves the store on; the forces of the step stay those of its balance
+static void advance_memory(const sn_net *net, sn_state *s) {
+    const sn_force_call call = {.precision = SN_DOUBLE,
+                                .mode = SN_MEMORY_ADVANCE,
+                                .u = s->u,
+                                .factors = s->factors,
+                                .store = s->store,
+                                .out = &s->probe,
+                                .team = s->team};
+    sn_net_forces(net, &call);
+}
+
 static void accept(const sn_net *net, sn_state *s, sn_implicit *im) {
     const size_t quads = (size_t)net->nodes * 4;
     const double *u = s->u, *v = s->v;
-    if (net->store_size > 0) { // the history of the step stays what it was
-        find_residual(net, s, im, SN_MEMORY_ADVANCE);
-        find_residual(net, s, im, SN_MEMORY_TRIAL);
-    }
+    if (net->store_size > 0) advance_memory(net, s);
     memcpy(s->contact, im->touch,
            (size_t)net->tool_count * (size_t)net->contact_count * sizeof *s->contact);
     for (int k = 0; k < net->fixed_count; k++) {

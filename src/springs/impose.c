@@ -50,8 +50,7 @@ sn_status sn_state_push(const sn_net *net, sn_state *s, int node, const double f
     return SN_OK;
 }
 
-void sn_state_add_pushes(const sn_net *net, sn_state *s) {
-    (void)net;
+void sn_state_add_pushes(sn_state *s) {
     for (int k = 0; k < s->pushed_count; k++)
         for (int d = 0; d < 3; d++) {
             const size_t at = 4 * (size_t)s->pushed[k] + (size_t)d;

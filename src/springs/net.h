@@ -387,7 +387,7 @@ double sn_state_prescribed(const sn_net *net, const sn_state *s, const sn_net_fi
 /// No loads, pushes or grips but those of the case; tools where the case has them.
 void sn_state_clear_imposed(const sn_net *net, sn_state *s);
 /// Adds pushes to the forces in s->now.f.
-void sn_state_add_pushes(const sn_net *net, sn_state *s);
+void sn_state_add_pushes(sn_state *s);
 /// Keeps the place and velocity of held nodes, at the start of a step.
 void sn_state_remember_grips(sn_state *s);
 /// Takes held nodes to where their tools are at the state's time + h.

@@ -17,6 +17,7 @@
 // much as it did between the last two. Tissue that has stiffened swings between softer and stiffer
 // places: measured on an exponential law at 16 times its stiffness at rest, 0.9 of the limit blows
 // up in the end and 0.77 does not, so stiffening shortens the step by up to another sixth.
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -72,7 +73,8 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
                s->tool_phase && s->load_factor && s->load_was && s->load_set && s->push &&
                s->pushed && s->grip && s->gripped;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
-        (steps && sn_scratch_create(net, net->precision, &s->probe) != SN_OK)) {
+        (net->integrator != SN_INTEGRATOR_QUASI_STATIC &&
+         sn_scratch_create(net, net->precision, &s->probe) != SN_OK)) {
         sn_state_destroy(s);
         return SN_E_MEMORY;
     }
@@ -141,7 +143,7 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                 .team = s->team};
     sn_net_forces(net, &call);
     if (net->loaded_count > 0) find_outer(net, s);
-    sn_state_add_pushes(net, s);
+    sn_state_add_pushes(s);
     sn_state_pull_tools(net, s);
 }
 
@@ -384,12 +386,18 @@ static void look_at_frequency(const sn_net *net, sn_state *s) {
     s->moved = 0;
 }
 
+// in each precision by itself, so that the compiler makes wide comparisons of it
 static bool forces_are_finite(const sn_net *net, const sn_state *s) {
-    double sum = 0; // not finite as soon as one is not: single precision cannot overflow it
-    for (int i = 0; i < net->nodes; i++)
-        for (size_t d = 0; d < 3; d++)
-            sum += fabs(sn_real_at(s->precision, s->now.f, 4 * (size_t)i + d));
-    return isfinite(sum);
+    const size_t count = 4 * (size_t)net->nodes;
+    int bad = 0;
+    if (s->precision == SN_SINGLE) {
+        const float *f = s->now.f;
+        for (size_t k = 0; k < count; k++) bad |= !(fabsf(f[k]) <= FLT_MAX);
+    } else {
+        const double *f = s->now.f;
+        for (size_t k = 0; k < count; k++) bad |= !(fabs(f[k]) <= DBL_MAX);
+    }
+    return !bad;
 }
 
 sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
