@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -140,6 +141,14 @@ SN_API sn_status sn_param_check(const sn_param *params, int count, int terms, co
 /// The best of `count` names for a misspelt one, or NULL when none is near (Damerau-Levenshtein
 /// distance at most a third of the length).
 SN_API const char *sn_suggest(const char *word, const char *const *names, int count);
+
+//---- fingerprints --------------------------------------------------------------------------------
+
+#define SN_HASH_START 14695981039346656037u
+/// Goes on with a hash of all that came before; not for secrets. Not the same on machines of
+/// another order of bytes. Source: Fowler, Noll and Vo's FNV-1a of 64 bits, here of eight bytes at
+/// a time.
+SN_API uint64_t sn_hash(uint64_t hash, const void *data, size_t bytes);
 
 //---- histories and records ----------------------------------------------------------------------
 

@@ -250,6 +250,9 @@ SN_API sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy
 /// where a law needs one, probes inside the body, loads and supports that contradict each other,
 /// tools that start inside, times. @return SN_OK, SN_E_DEFINITION, SN_E_RANGE.
 SN_API sn_status sn_case_check(const sn_case *c);
+/// Tells cases apart by all that a state of an engine depends on: mesh, tissues, fibre, gravity,
+/// supports, loads, tools, probes; not times of output and settings of engines.
+SN_API uint64_t sn_case_fingerprint(const sn_case *c);
 
 /// What is prescribed at each node at time t, from supports and displacement loads. Where both hold
 /// a node in one direction they must say the same; sn_case_check() refuses what contradicts.

@@ -49,61 +49,19 @@ static void agree(archive *a, uint64_t here) {
 
 //---- which case ---------------------------------------------------------------------------------
 
-// FNV-1a, 64 bits.
-static void mix(uint64_t *hash, const void *data, size_t bytes) {
-    const unsigned char *byte = data;
-    for (size_t k = 0; k < bytes; k++) *hash = (*hash ^ byte[k]) * 1099511628211u;
-}
-
-static void mix_history(uint64_t *hash, const sn_history *h) {
-    if (!h) return;
-    mix(hash, h->time, (size_t)h->count * sizeof *h->time);
-    mix(hash, h->value, (size_t)h->count * (size_t)h->channels * sizeof *h->value);
-}
-
-static void mix_memory(uint64_t *hash, const sn_exponentials *e) {
-    mix(hash, &e->g_inf, sizeof e->g_inf);
-    mix(hash, &e->viscous, sizeof e->viscous);
-    mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
-    mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
-}
-
-// What the numbers of the state mean: body, tissues with the exponentials of their memories, loads,
-// tools, element, analysis. Not the length of the steps and the tolerance, which may be changed.
+// What the numbers of the state mean: the case, element, analysis, exponentials of the memories.
+// Not the length of the steps and the tolerance, which may be changed.
 static uint64_t fingerprint(const sn_fe_march *m) {
-    const sn_case *c = m->c;
-    uint64_t hash = 14695981039346656037u;
-    const int kind[] = {(int)c->continuum.element,
-                        (int)c->continuum.analysis,
-                        c->load_count,
-                        c->tool_count,
-                        c->support_count,
-                        c->probe_count};
-    mix(&hash, kind, sizeof kind);
-    mix(&hash, c->mesh->node, 3 * (size_t)c->mesh->node_count * sizeof *c->mesh->node);
-    mix(&hash, c->mesh->cell, 4 * (size_t)c->mesh->cell_count * sizeof *c->mesh->cell);
-    mix(&hash, c->fibre, sizeof c->fibre);
-    mix(&hash, c->gravity, sizeof c->gravity);
-    for (int r = 0; r < m->problem->materials->count; r++) {
-        const sn_fe_material *of = m->problem->materials->material + r;
-        mix(&hash, of->tissue->law->name, strlen(of->tissue->law->name));
-        mix(&hash, of->tissue->value, sizeof of->tissue->value);
-        mix(&hash, &of->tissue->density, sizeof of->tissue->density);
-        for (int part = 0; part < SN_PARTS; part++) mix_memory(&hash, &of->part[part].series);
-    }
-    for (int k = 0; k < c->support_count; k++)
-        mix(&hash, c->support[k].fix, sizeof c->support[k].fix);
-    for (int k = 0; k < c->load_count; k++) {
-        mix(&hash, &c->load[k].kind, sizeof c->load[k].kind);
-        mix(&hash, c->load[k].vector, sizeof c->load[k].vector);
-        mix(&hash, &c->load[k].pressure, sizeof c->load[k].pressure);
-        mix_history(&hash, c->load[k].factor);
-    }
-    for (int k = 0; k < c->tool_count; k++) {
-        mix(&hash, c->tool[k].at, sizeof c->tool[k].at);
-        mix_history(&hash, c->tool[k].path);
-        mix_history(&hash, c->tool[k].turn);
-    }
+    const int kind[] = {(int)m->c->continuum.element, (int)m->c->continuum.analysis};
+    uint64_t hash = sn_hash(sn_case_fingerprint(m->c), kind, sizeof kind);
+    for (int r = 0; r < m->problem->materials->count; r++)
+        for (int part = 0; part < SN_PARTS; part++) {
+            const sn_exponentials *e = &m->problem->materials->material[r].part[part].series;
+            const double ends[] = {e->g_inf, e->viscous};
+            hash = sn_hash(hash, ends, sizeof ends);
+            hash = sn_hash(hash, e->g, (size_t)e->terms * sizeof *e->g);
+            hash = sn_hash(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+        }
     return hash;
 }
 

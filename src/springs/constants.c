@@ -56,6 +56,9 @@ sn_status sn_net_set_spring_stiffness(sn_net *net, const double *stiffness) {
         }
         sn_free(mode);
     }
+    if (status == SN_OK)
+        net->fingerprint =
+            sn_hash(net->fingerprint, stiffness, (size_t)net->springs * sizeof *stiffness);
     sn_free(before);
     return status;
 }

@@ -374,7 +374,7 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
     n->node_place = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_place);
     if (!n->node_place) status = SN_E_MEMORY;
     for (int i = 0; i < n->nodes && status == SN_OK; i++) n->node_place[n->node_name[i]] = i;
-    if (status == SN_OK) n->fingerprint = sn_net_fingerprint(n);
+    if (status == SN_OK) n->fingerprint = sn_net_fingerprint(c, n);
     if (status != SN_OK) {
         sn_net_destroy(n);
         return status;

@@ -538,7 +538,7 @@ typedef struct sn_piece {
 } sn_piece;
 #define SN_PIECES_MAX 64
 #define SN_IMPLICIT_PIECES 9
-uint64_t sn_net_fingerprint(const sn_net *net);
+uint64_t sn_net_fingerprint(const sn_case *c, const sn_net *net);
 /// What of the implicit integrator later steps depend on; returns how many pieces. Calls
 /// sn_implicit_forget().
 int sn_implicit_pieces(const sn_net *net, sn_implicit *implicit, sn_piece *piece);

@@ -24,68 +24,17 @@ static const char state_magic[8] = "SNSTATE", run_magic[8] = "SNRUN";
 
 //---- fingerprints --------------------------------------------------------------------------------
 
-// Source: Fowler, Noll and Vo's hash FNV-1a of 64 bits, here of eight bytes at a time
-static uint64_t mix(uint64_t hash, const void *data, size_t bytes) {
-    const unsigned char *at = data;
-    for (; bytes > 0; at += 8) {
-        uint64_t word = 0;
-        size_t part = bytes < 8 ? bytes : 8;
-        memcpy(&word, at, part);
-        hash = (hash ^ word) * 1099511628211u;
-        hash ^= hash >> 29; // the product carries upwards only
-        bytes -= part;
-    }
-    return hash;
-}
-
-static uint64_t mix_history(uint64_t hash, const sn_history *h) {
-    if (!h) return mix(hash, "none", 4);
-    hash = mix(hash, h->time, (size_t)h->count * sizeof *h->time);
-    return mix(hash, h->value, (size_t)h->count * (size_t)h->channels * sizeof *h->value);
-}
-
+// of the constants as the kernels have them, whatever rule they came from
 static uint64_t mix_region(uint64_t hash, const sn_net_region *g) {
     const sn_exponentials *e = &g->memory;
     const double numbers[] = {g->density,    g->shear, g->bulk,    g->exponent,
                               g->stiffening, e->g_inf, e->viscous, (double)e->terms};
-    hash = mix(hash, g->tissue.law->name, strlen(g->tissue.law->name));
-    hash = mix(hash, g->tissue.value, sizeof g->tissue.value);
-    hash = mix(hash, numbers, sizeof numbers);
-    hash = mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
-    return mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    hash = sn_hash(hash, numbers, sizeof numbers);
+    hash = sn_hash(hash, e->g, (size_t)e->terms * sizeof *e->g);
+    return sn_hash(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
 }
 
-static uint64_t mix_drive(uint64_t hash, const sn_net *net) {
-    for (int k = 0; k < net->fixed_count; k++) {
-        const sn_net_fixed *f = &net->fixed[k];
-        const double numbers[] = {f->node, f->direction, f->load, f->value};
-        hash = mix(hash, numbers, sizeof numbers);
-    }
-    for (int k = 0; k < net->factor_count; k++) hash = mix_history(hash, net->factor[k]);
-    for (int k = 0; k < net->load_count; k++) {
-        const sn_net_load *l = &net->load[k];
-        const size_t nodes = (size_t)l->count * (l->kind == SN_LOAD_PRESSURE ? 3 : 1);
-        hash = mix(mix_history(hash, l->factor), &l->pressure, sizeof l->pressure);
-        hash = mix(hash, l->node, nodes * sizeof *l->node);
-        if (l->force) hash = mix(hash, l->force, nodes * 3 * sizeof *l->force);
-    }
-    for (int k = 0; k < net->tool_count; k++) {
-        const sn_tool *t = &net->tool[k];
-        const double numbers[] = {(double)t->kind, t->radius,   t->axis[0], t->axis[1],
-                                  t->axis[2],      t->at[0],    t->at[1],   t->at[2],
-                                  t->friction,     t->grasp[0], t->grasp[1]};
-        hash = mix(mix_history(mix_history(hash, t->path), t->turn), numbers, sizeof numbers);
-    }
-    for (int k = 0; k < net->probe_count; k++) {
-        const sn_net_probe *p = &net->probe[k];
-        hash = mix(hash, p->kind == SN_PROBE_POINT ? p->node : p->fixed,
-                   (p->kind == SN_PROBE_POINT ? 4 : (size_t)p->count) * sizeof(int));
-        if (p->kind == SN_PROBE_POINT) hash = mix(hash, p->weight, sizeof p->weight);
-    }
-    return hash;
-}
-
-uint64_t sn_net_fingerprint(const sn_net *net) {
+uint64_t sn_net_fingerprint(const sn_case *c, const sn_net *net) {
     const double numbers[] = {net->nodes,
                               net->cells,
                               net->springs,
@@ -100,19 +49,11 @@ uint64_t sn_net_fingerprint(const sn_net *net) {
                               net->asked_step,
                               net->step,
                               net->omega2,
-                              net->gravity[0],
-                              net->gravity[1],
-                              net->gravity[2],
                               SN_BLOCK,
                               (double)sizeof(sn_run_summary)};
-    const size_t slots = (size_t)net->cell_blocks * SN_BLOCK;
-    uint64_t hash = mix(14695981039346656037u, numbers, sizeof numbers);
-    hash = mix(hash, net->axes, sizeof net->axes);
-    hash = mix(hash, net->node_position, (size_t)net->nodes * 3 * sizeof(double));
-    hash = mix(hash, net->cell_node, slots * 4 * sizeof(int));
-    hash = mix(hash, net->data[SN_DOUBLE].volume, slots * sizeof(double));
+    uint64_t hash = sn_hash(sn_case_fingerprint(c), numbers, sizeof numbers);
     for (int r = 0; r < net->region_count; r++) hash = mix_region(hash, &net->region[r]);
-    return mix_drive(hash, net);
+    return hash;
 }
 
 //---- pieces --------------------------------------------------------------------------------------
@@ -199,7 +140,7 @@ static void seal(const sn_net *net, const char magic[8], size_t bytes, unsigned 
                           .fingerprint = net->fingerprint,
                           .bytes = bytes};
     memcpy(head.magic, magic, sizeof head.magic);
-    head.checksum = mix(head.fingerprint, out + sizeof head, bytes);
+    head.checksum = sn_hash(head.fingerprint, out + sizeof head, bytes);
     memcpy(out, &head, sizeof head);
 }
 
@@ -221,8 +162,8 @@ static sn_status check_head(const sn_net *net, const char magic[8], const char *
                        what, (unsigned long long)head.fingerprint,
                        (unsigned long long)net->fingerprint);
     if (head.bytes != size - sizeof head ||
-        head.checksum !=
-            mix(head.fingerprint, (const unsigned char *)bytes + sizeof head, size - sizeof head))
+        head.checksum != sn_hash(head.fingerprint, (const unsigned char *)bytes + sizeof head,
+                                 size - sizeof head))
         return sn_fail(SN_E_DATA, "%s: damaged: %zu bytes with a wrong length or checksum", what,
                        size);
     return SN_OK;

@@ -259,13 +259,76 @@ static void defaults(void **state) {
     sn_case_destroy(c);
 }
 
+// Every number that an engine's state depends on changes the fingerprint; nothing else does.
+static void fingerprints(void **state) {
+    (void)state;
+    sn_case *c = block_case(), *copy = NULL;
+    hold(c, "left", "xyz");
+    move(c, "right", 0.001, NAN, NAN)->factor = ramp(0, 1, 0.5);
+    add_sphere(c, "ball", 0.002, 0.01, 0.01, 0.03);
+    CHECK_OK(sn_history_create(3, 1, (double[]){0}, (double[]){0, 0, -0.001}, &c->tool[0].path));
+    add_probe(c, "tip", SN_PROBE_POINT, 0.01, 0.01, 0.01, NULL);
+    const uint64_t own = sn_case_fingerprint(c);
+    double *const numbers[] = {&c->mesh->node[5],
+                               &c->tissue[0].value[0],
+                               &c->tissue[0].density,
+                               &c->fibre[1],
+                               &c->gravity[2],
+                               &c->load[0].vector[0],
+                               &c->load[0].pressure,
+                               &c->load[0].factor->time[1],
+                               &c->load[0].factor->value[0],
+                               &c->tool[0].radius,
+                               &c->tool[0].axis[2],
+                               &c->tool[0].at[1],
+                               &c->tool[0].friction,
+                               &c->tool[0].grasp[1],
+                               &c->tool[0].path->value[2],
+                               &c->probe[0].point[0]};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) {
+        const double kept = *numbers[k];
+        *numbers[k] = nextafter(kept, 1e300);
+        assert_true(sn_case_fingerprint(c) != own);
+        *numbers[k] = kept;
+    }
+    int *const counts[] = {&c->mesh->cell[7],        &c->mesh->surface[0].face[2],
+                           &c->support[0].surface,   &c->load[0].surface,
+                           (int *)&c->load[0].kind,  (int *)&c->tool[0].kind,
+                           (int *)&c->probe[0].kind, &c->mesh->region[3]};
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        *counts[k] += 1;
+        assert_true(sn_case_fingerprint(c) != own);
+        *counts[k] -= 1;
+    }
+    bool *const flags[] = {&c->support[0].fix[1], &c->load[0].free[2]};
+    for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) {
+        *flags[k] = !*flags[k];
+        assert_true(sn_case_fingerprint(c) != own);
+        *flags[k] = !*flags[k];
+    }
+    c->tissue[0].memory = sn_memory_none();
+    c->tissue[0].memory.law = sn_memory_law_find("maxwell");
+    assert_true(sn_case_fingerprint(c) != own);
+    c->tissue[0].memory = sn_memory_none();
+    c->until *= 2; // what an engine may change when it goes on
+    c->springs.threads = 2;
+    strcpy(c->name, "another");
+    assert_true(sn_case_fingerprint(c) == own);
+    sn_mesh *mesh = NULL;
+    CHECK_OK(sn_mesh_copy(c->mesh, &mesh));
+    CHECK_OK(sn_case_on_mesh(c, mesh, &copy));
+    assert_true(sn_case_fingerprint(copy) == own);
+    sn_case_destroy(copy);
+    sn_case_destroy(c);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(prescribed),    cmocka_unit_test(free_motions),
         cmocka_unit_test(carried_along), cmocka_unit_test(free_motions_of_few_nodes),
         cmocka_unit_test(on_mesh),       cmocka_unit_test(columns),
         cmocka_unit_test(axes),          cmocka_unit_test(penalty),
-        cmocka_unit_test(defaults),
+        cmocka_unit_test(defaults),      cmocka_unit_test(fingerprints),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
