@@ -186,16 +186,12 @@ static void remarks(const sn_tissue *tissue, sn_foreign *how) {
                                "equal to ours at small changes of volume");
     if (incompressible)
         sn_foreign_remark(how, "D = 0 means incompressible and needs hybrid elements");
-    if (isfinite(tissue->density) && isnan(how->length))
-        sn_foreign_remark(how, "the density was left out: it needs a unit of length");
 }
 
 sn_status sn_tissue_write_abaqus(const char *path, const sn_tissue *tissue, sn_foreign *how) {
     sn_exponentials e;
     int law = 0;
-    how->remarks[0] = 0;
-    SN_TRY(sn_foreign_check(how));
-    SN_TRY(sn_tissue_check(tissue));
+    SN_TRY(sn_foreign_start(tissue, how));
     SN_TRY(find_law(tissue, &law));
     SN_TRY(sn_foreign_memory(tissue, TERMS_MAX, how, &e));
     if (!(e.g_inf > 0))

@@ -194,16 +194,12 @@ static void remarks(const sn_tissue *tissue, const sn_exponentials *e, sn_foreig
                                "the fibres: give them to the part");
     if (e->terms)
         sn_foreign_remark(how, "FEBio's memory spares the volume: k does not relax there");
-    if (isfinite(tissue->density) && isnan(how->length))
-        sn_foreign_remark(how, "the density was left out: it needs a unit of length");
 }
 
 sn_status sn_tissue_write_febio(const char *path, const sn_tissue *tissue, sn_foreign *how) {
     sn_exponentials e;
     int law = 0;
-    how->remarks[0] = 0;
-    SN_TRY(sn_foreign_check(how));
-    SN_TRY(sn_tissue_check(tissue));
+    SN_TRY(sn_foreign_start(tissue, how));
     SN_TRY(find_law(tissue, &law));
     SN_TRY(sn_foreign_memory(tissue, TERMS_MAX, how, &e));
     remarks(tissue, &e, how);

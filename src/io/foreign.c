@@ -32,6 +32,15 @@ void sn_foreign_remark(sn_foreign *how, const char *format, ...) {
     va_end(arguments);
 }
 
+sn_status sn_foreign_start(const sn_tissue *tissue, sn_foreign *how) {
+    how->remarks[0] = 0;
+    SN_TRY(sn_foreign_check(how));
+    SN_TRY(sn_tissue_check(tissue));
+    if (isfinite(tissue->density) && isnan(how->length))
+        sn_foreign_remark(how, "the density was left out: it needs a unit of length");
+    return SN_OK;
+}
+
 double sn_foreign_density(const sn_foreign *how) {
     return how->stress * how->time * how->time / (how->length * how->length);
 }

@@ -6,6 +6,9 @@
 
 /// Units given and of use. @return SN_OK, SN_E_DEFINITION.
 sn_status sn_foreign_check(const sn_foreign *how);
+/// Before a tissue is written: units and tissue checked, remarks empty but for what the units
+/// cannot say. @return as sn_foreign_check() and sn_tissue_check().
+sn_status sn_foreign_start(const sn_tissue *tissue, sn_foreign *how);
 /// Adds a sentence to the remarks.
 void sn_foreign_remark(sn_foreign *how, const char *format, ...) SN_PRINTF(2, 3);
 /// SI value of the unit of density that follows from stress, time and length; NAN without a length.

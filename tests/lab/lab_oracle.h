@@ -35,6 +35,25 @@ static inline double oracle_hereditary(const sn_history *h, const sn_memory *mem
     return sum;
 }
 
+/// A fit of `tissue`'s law and memory to curves.
+static inline sn_fit_def oracle_fit(const sn_tissue *tissue, const sn_curve *curve, int count) {
+    sn_fit_def def = sn_fit_def_default();
+    def.curve = curve;
+    def.curve_count = count;
+    def.law = tissue->law;
+    def.memory = tissue->memory.law->param_count > 0 ? tissue->memory.law : NULL;
+    def.terms = tissue->memory.terms;
+    return def;
+}
+
+/// A fitted constant by its name; the test fails where there is none.
+static inline const sn_fit_param *oracle_param(const sn_fit_result *r, const char *name) {
+    for (int k = 0; k < r->param_count; ++k)
+        if (strcmp(r->param[k].name, name) == 0) return &r->param[k];
+    fail_msg("no parameter %s", name);
+    return NULL;
+}
+
 /// Brute-force convolution in equal steps, for stresses whose history must be solved for: the
 /// integral of a channel is the sum of its increments, each times the mean of G over the times that
 /// it lies back. Second order in the step. Use: at every step `history`, solve for the new values

@@ -54,13 +54,6 @@ static sn_curve sheared(const sn_tissue *tissue, double end, double noise, uint6
     return c;
 }
 
-static const sn_fit_param *param_of(const sn_fit_result *r, const char *name) {
-    for (int k = 0; k < r->param_count; ++k)
-        if (strcmp(r->param[k].name, name) == 0) return &r->param[k];
-    fail_msg("no parameter %s", name);
-    return NULL;
-}
-
 static sn_fit_def fit_of(const sn_law *law, const sn_curve *curve, int count) {
     sn_fit_def def = sn_fit_def_default();
     def.law = law;
@@ -344,7 +337,7 @@ static void check_recovery(const law_case *l, int ratios) {
     assert_true(r->identifiable);
     for (int k = 0; k < l->count; ++k) {
         if (!l->name[k] || isinf(l->value[k])) continue;
-        const sn_fit_param *p = param_of(r, l->name[k]);
+        const sn_fit_param *p = oracle_param(r, l->name[k]);
         if (p->fixed) continue;
         double width = p->ci95[1] - p->ci95[0];
         CHECK_ABS(l->value[k], 0.5 * (p->ci95[0] + p->ci95[1]), width);
@@ -382,20 +375,20 @@ static void shears_are_tied_until_seen(void **state) {
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     sn_fit_def def = fit_of(t.law, curve, 3);
     CHECK_OK(sn_fit(&def, r));
-    const sn_fit_param *a3 = param_of(r, "a3");
+    const sn_fit_param *a3 = oracle_param(r, "a3");
     assert_true(a3->fixed && strstr(a3->reason, "isotropic"));
     CHECK_REL(a3->value, 0.5 * (19.0 + 11.0) - 4.0, 1e-5); // the others to the search's 1e-6
     sn_fit_release(r);
     def = fit_of(t.law, curve, 4);
     CHECK_OK(sn_fit(&def, r));
-    a3 = param_of(r, "a3");
+    a3 = oracle_param(r, "a3");
     assert_false(a3->fixed);
     for (int k = 0; k < 5; ++k) CHECK_REL(r->param[k].value, planar.value[k], 1e-5);
     sn_fit_release(r);
     def = fit_of(t.law, curve, 3);
     fix(&def, "a3", 8.0);
     CHECK_OK(sn_fit(&def, r));
-    assert_true(param_of(r, "a3")->value == 8.0);
+    assert_true(oracle_param(r, "a3")->value == 8.0);
     sn_fit_release(r);
     sn_free(r);
     release(4, curve);
@@ -442,14 +435,14 @@ static void one_ratio_is_not_enough(void **state) {
         sn_fit_def def = fit_case(l, &t, &c, 1);
         CHECK_OK(sn_fit(&def, r));
         assert_false(r->identifiable);
-        const sn_fit_param *a4 = param_of(r, "a4");
+        const sn_fit_param *a4 = oracle_param(r, "a4");
         assert_false(a4->identifiable);
         assert_non_null(strstr(a4->reason, "one loading ratio"));
         if (k < 2) assert_non_null(strstr(a4->reason, "only a1 +1 a4 and a2 +1 a4 are known"));
         if (k == 0) {
-            assert_true(param_of(r, "c")->identifiable);
-            CHECK_REL(param_of(r, "a1")->value + a4->value, 23.0, 0.1);
-            CHECK_REL(param_of(r, "a2")->value + a4->value, 15.0, 0.1);
+            assert_true(oracle_param(r, "c")->identifiable);
+            CHECK_REL(oracle_param(r, "a1")->value + a4->value, 23.0, 0.1);
+            CHECK_REL(oracle_param(r, "a2")->value + a4->value, 15.0, 0.1);
         }
         assert_true(r->nrmse < 0.012);
         sn_fit_release(r);
@@ -481,9 +474,9 @@ static void fits_stay_convex(void **state) {
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     CHECK_OK(sn_law_check(r->tissue.law, r->tissue.value, 0));
-    const sn_fit_param *a4 = param_of(r, "a4");
+    const sn_fit_param *a4 = oracle_param(r, "a4");
     assert_true(a4->at_bound && strstr(a4->reason, "limit of convexity"));
-    double limit = sqrt(param_of(r, "a1")->value * param_of(r, "a2")->value);
+    double limit = sqrt(oracle_param(r, "a1")->value * oracle_param(r, "a2")->value);
     CHECK_REL(a4->value, limit, 1e-3);
     assert_true(r->r_squared > 0.9);
     sn_fit_release(r);

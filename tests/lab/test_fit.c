@@ -37,23 +37,6 @@ static void release(sn_curve curve[RAMPS]) {
     for (int k = 0; k < RAMPS; ++k) sn_curve_release(&curve[k]);
 }
 
-static sn_fit_def fit_of(const sn_tissue *tissue, const sn_curve *curve, int count) {
-    sn_fit_def def = sn_fit_def_default();
-    def.curve = curve;
-    def.curve_count = count;
-    def.law = tissue->law;
-    def.memory = tissue->memory.law;
-    def.terms = tissue->memory.terms;
-    return def;
-}
-
-static const sn_fit_param *param_of(const sn_fit_result *r, const char *name) {
-    for (int k = 0; k < r->param_count; ++k)
-        if (strcmp(r->param[k].name, name) == 0) return &r->param[k];
-    fail_msg("no parameter %s", name);
-    return NULL;
-}
-
 //---- recovery ------------------------------------------------------------------------------------
 
 // Data without noise: the constants come back. At these steps the model of a fit is good to 1e-7 of
@@ -65,7 +48,7 @@ static void check_recovery(const char *law, const double *value, int count, sn_m
     tissue.memory = memory;
     sn_curve curve[RAMPS];
     virtual_ramps(&tissue, 0.0, &seed, curve);
-    sn_fit_def def = fit_of(&tissue, curve, RAMPS);
+    sn_fit_def def = oracle_fit(&tissue, curve, RAMPS);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     if (!r->converged) print_message("%s x %s: %s\n", law, memory.law->name, r->reason);
@@ -114,13 +97,13 @@ static void ogden_is_fitted_by_terms(void **state) {
     sn_tissue tissue = oracle_tissue("ogden", value, 3);
     tissue.terms = 1;
     sn_curve curve = virtual_ramp(&tissue, 1.0, 1.3, 0.0, &seed);
-    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_def def = oracle_fit(&tissue, &curve, 1);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     assert_int_equal(r->tissue.terms, 1);
     // no memory, no steps: what the search stops at
-    CHECK_REL(param_of(r, "mu1")->value, value[0], 1e-6);
-    CHECK_REL(param_of(r, "alpha1")->value, value[1], 1e-6);
+    CHECK_REL(oracle_param(r, "mu1")->value, value[0], 1e-6);
+    CHECK_REL(oracle_param(r, "alpha1")->value, value[1], 1e-6);
     CHECK_OK(sn_tissue_check(&r->tissue));
     sn_fit_release(r);
     for (int i = 0; i < curve.count; ++i) curve.stress[i] = -curve.stress[i];
@@ -144,12 +127,12 @@ static void bulk_modulus_is_fixed_or_infinite(void **state) {
     sn_tissue tissue = oracle_tissue("neo-hookean", value, 2);
     tissue.memory = oracle_memory("prony", 1, g, 2);
     sn_curve curve = virtual_ramp(&tissue, 1.0, 1.3, 0.0, &seed);
-    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_def def = oracle_fit(&tissue, &curve, 1);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     assert_true(isinf(r->tissue.value[1]));
-    assert_true(param_of(r, "bulk_modulus")->fixed);
-    assert_true(isnan(param_of(r, "bulk_modulus")->standard_error));
+    assert_true(oracle_param(r, "bulk_modulus")->fixed);
+    assert_true(isnan(oracle_param(r, "bulk_modulus")->standard_error));
     sn_fit_release(r);
     def.fixed_count = 1;
     def.fixed_name[0] = "bulk_modulus";
@@ -192,12 +175,12 @@ static void noisy_ramps_give_intervals(void **state) {
         sn_tissue tissue = random_tissue(&seed, truth);
         sn_curve curve[RAMPS];
         virtual_ramps(&tissue, 0.01, &seed, curve);
-        sn_fit_def def = fit_of(&tissue, curve, RAMPS);
+        sn_fit_def def = oracle_fit(&tissue, curve, RAMPS);
         CHECK_OK(sn_fit(&def, r));
         assert_true(r->converged && r->r_squared > 0.995);
         assert_int_equal(r->points, RAMPS * ROWS);
         for (int j = 0; j < 5; ++j) {
-            const sn_fit_param *p = param_of(r, names[j]);
+            const sn_fit_param *p = oracle_param(r, names[j]);
             double width = p->ci95[1] - p->ci95[0];
             held += p->ci95[0] <= truth[j] && truth[j] <= p->ci95[1];
             assert_true(p->ci95[0] < p->value && p->value < p->ci95[1]);
@@ -208,8 +191,8 @@ static void noisy_ramps_give_intervals(void **state) {
         def.curve_count = 1;
         CHECK_OK(sn_fit(&def, r));
         assert_false(r->identifiable);
-        assert_false(param_of(r, "tau1")->identifiable);
-        assert_true(strlen(param_of(r, "tau1")->reason) > 10);
+        assert_false(oracle_param(r, "tau1")->identifiable);
+        assert_true(strlen(oracle_param(r, "tau1")->reason) > 10);
         sn_fit_release(r);
         release(curve);
     }
@@ -244,14 +227,14 @@ static void long_records(void **state) {
         for (int i = 1; i < curve[k].count; ++i)
             curve[k].stress[i] += 0.01 * peak * oracle_normal(&seed);
     }
-    sn_fit_def def = fit_of(&tissue, curve, RAMPS);
+    sn_fit_def def = oracle_fit(&tissue, curve, RAMPS);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     assert_true(r->converged);
     assert_int_equal(r->points, 3020);
-    CHECK_REL(param_of(r, "B")->value, 13, 0.02);
-    CHECK_REL(param_of(r, "C")->value, 9e3, 0.02 * 3); // tied to B
-    CHECK_REL(param_of(r, "c")->value, 0.17, 0.02 * 3);
+    CHECK_REL(oracle_param(r, "B")->value, 13, 0.02);
+    CHECK_REL(oracle_param(r, "C")->value, 9e3, 0.02 * 3); // tied to B
+    CHECK_REL(oracle_param(r, "c")->value, 0.17, 0.02 * 3);
     assert_true(r->r_squared > 0.998);
     release(curve);
     sn_fit_release(r);
@@ -323,7 +306,7 @@ static void same_input_gives_same_bits_and_seeds_agree(void **state) {
     sn_tissue tissue = random_tissue(&seed, truth);
     sn_curve curve[RAMPS];
     virtual_ramps(&tissue, 0.01, &seed, curve);
-    sn_fit_def def = fit_of(&tissue, curve, RAMPS);
+    sn_fit_def def = oracle_fit(&tissue, curve, RAMPS);
     sn_fit_result *r[3];
     for (int k = 0; k < 3; ++k) {
         r[k] = sn_alloc(1, sizeof **r);
@@ -357,7 +340,7 @@ static void shared_names_and_fixed_constants(void **state) {
     tissue.memory = oracle_memory("fung-spectrum", 0, spectrum, 3);
     sn_curve curve[RAMPS];
     virtual_ramps(&tissue, 0.0, &seed, curve);
-    sn_fit_def def = fit_of(&tissue, curve, RAMPS);
+    sn_fit_def def = oracle_fit(&tissue, curve, RAMPS);
     def.fixed_count = 2;
     def.fixed_name[0] = "memory.c";
     def.fixed_value[0] = 0.137;
@@ -367,10 +350,10 @@ static void shared_names_and_fixed_constants(void **state) {
     def.progress_context = &reports;
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
-    assert_true(param_of(r, "memory.c")->fixed && param_of(r, "memory.c")->value == 0.137);
-    assert_false(param_of(r, "c")->fixed);
-    CHECK_REL(param_of(r, "c")->value, 2.9e3, 1e-5);
-    CHECK_REL(param_of(r, "tau2")->value, 83.0, 1e-5);
+    assert_true(oracle_param(r, "memory.c")->fixed && oracle_param(r, "memory.c")->value == 0.137);
+    assert_false(oracle_param(r, "c")->fixed);
+    CHECK_REL(oracle_param(r, "c")->value, 2.9e3, 1e-5);
+    CHECK_REL(oracle_param(r, "tau2")->value, 83.0, 1e-5);
     assert_true(reports >= 3);
 
     // the tissue predicts its own data

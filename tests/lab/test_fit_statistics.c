@@ -12,23 +12,6 @@ static sn_tissue spectrum_tissue(void) {
     return tissue;
 }
 
-static sn_fit_def fit_of(const sn_tissue *tissue, const sn_curve *curve, int count) {
-    sn_fit_def def = sn_fit_def_default();
-    def.curve = curve;
-    def.curve_count = count;
-    def.law = tissue->law;
-    def.memory = tissue->memory.law;
-    def.terms = tissue->memory.terms;
-    return def;
-}
-
-static const sn_fit_param *param_of(const sn_fit_result *r, const char *name) {
-    for (int k = 0; k < r->param_count; ++k)
-        if (strcmp(r->param[k].name, name) == 0) return &r->param[k];
-    fail_msg("no parameter %s", name);
-    return NULL;
-}
-
 static void release(sn_curve *curve, int count) {
     for (int k = 0; k < count; ++k) sn_curve_release(&curve[k]);
 }
@@ -40,14 +23,14 @@ static void release(sn_curve *curve, int count) {
 // counts how often the intervals themselves hold.
 static void check_known(const sn_curve *curve, int count, int points) {
     sn_tissue tissue = spectrum_tissue();
-    sn_fit_def def = fit_of(&tissue, curve, count);
+    sn_fit_def def = oracle_fit(&tissue, curve, count);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     assert_true(r->converged && r->identifiable);
     assert_int_equal(r->points, points);
     assert_string_equal(r->determined, "");
     for (int j = 0; j < CONSTANTS; ++j) {
-        const sn_fit_param *p = param_of(r, names[j]);
+        const sn_fit_param *p = oracle_param(r, names[j]);
         if (j < 3) CHECK_REL(p->value, truth[j], 0.05);
         CHECK_ABS(p->value, truth[j], p->ci95[1] - p->ci95[0]);
     }
@@ -87,11 +70,11 @@ static void one_ramp_does_not_know_all(void **state) {
     sn_curve curve = oracle_test(&tissue, SN_PROTOCOL_RELAXATION, 2.0, 600);
     double noise = 0.01 * oracle_peak(&curve), error = 0.0;
     oracle_noise(&curve, noise, &seed);
-    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_def def = oracle_fit(&tissue, &curve, 1);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit(&def, r));
     print_message("determined: %s\nweakest: %s\n", r->determined, r->weakest);
-    assert_false(r->identifiable || param_of(r, "tau1")->identifiable);
+    assert_false(r->identifiable || oracle_param(r, "tau1")->identifiable);
     assert_non_null(strstr(r->weakest, "ln tau1"));
     assert_non_null(strstr(r->determined, "C"));
     assert_non_null(strstr(r->determined, "in SI units"));
@@ -122,7 +105,7 @@ static sn_curve line(double slope, double noise, double grow, uint64_t *seed) {
 
 static sn_fit_def fit_line(const sn_curve *curve, int count) {
     sn_tissue tissue = oracle_tissue("linear", (const double[]){1.0}, 1);
-    return fit_of(&tissue, curve, count);
+    return oracle_fit(&tissue, curve, count);
 }
 
 // Wild refits of a line through the origin have the variance sum x^2 r^2 / (sum x^2)^2 n/(n-1)
@@ -249,7 +232,7 @@ static void a_window_keeps_the_history(void **state) {
     sn_tissue tissue = oracle_tissue("linear", (const double[]){3e4}, 1);
     tissue.memory = oracle_memory("maxwell", 0, (const double[]){20.0}, 1);
     sn_curve curve = oracle_test(&tissue, SN_PROTOCOL_RELAXATION, 2.0, 200);
-    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_def def = oracle_fit(&tissue, &curve, 1);
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     int inside = 0;
     for (int i = 0; i < curve.count; ++i) {
@@ -263,8 +246,8 @@ static void a_window_keeps_the_history(void **state) {
     assert_int_equal(r->points, inside);
     assert_int_equal(r->curve[0].used, inside);
     assert_true(curve.time[r->curve[0].first] >= 5.0 && curve.time[r->curve[0].first - 1] < 5.0);
-    CHECK_REL(param_of(r, "modulus")->value, 3e4, 1e-5);
-    CHECK_REL(param_of(r, "tau")->value, 20.0, 1e-5);
+    CHECK_REL(oracle_param(r, "modulus")->value, 3e4, 1e-5);
+    CHECK_REL(oracle_param(r, "tau")->value, 20.0, 1e-5);
     sn_fit_release(r);
     def.from = 1e4;
     def.to = 2e4;
@@ -284,7 +267,7 @@ static void terms_are_chosen_by_aicc(void **state) {
     sn_curve curve[2] = {oracle_test(&tissue, SN_PROTOCOL_RELAXATION, 0.2, 120),
                          oracle_test(&tissue, SN_PROTOCOL_RELAXATION, 20.0, 120)};
     for (int k = 0; k < 2; ++k) oracle_noise(&curve[k], 0.01 * oracle_peak(&curve[k]), &seed);
-    sn_fit_def def = fit_of(&tissue, curve, 2);
+    sn_fit_def def = oracle_fit(&tissue, curve, 2);
     sn_fit_choice choice;
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit_choose_terms(&def, false, 4, &choice, r));
@@ -317,7 +300,7 @@ static void terms_are_chosen_by_aicc(void **state) {
         s[i] = 120.0 * i + 7.0 * oracle_normal(&seed);
     }
     curve[0] = oracle_curve("short", 10, t, l, s);
-    def = fit_of(&tissue, curve, 1);
+    def = oracle_fit(&tissue, curve, 1);
     CHECK_OK(sn_fit_choose_terms(&def, false, 8, &choice, r));
     assert_int_equal(choice.count, 3);
     assert_non_null(strstr(choice.reason, "10 rows for 10 constants"));
@@ -335,7 +318,7 @@ static void terms_of_a_law(void **state) {
     tissue.terms = 2;
     sn_curve curve = oracle_test(&tissue, SN_PROTOCOL_TENSILE, 1.0, 150);
     oracle_noise(&curve, 0.002 * oracle_peak(&curve), &seed);
-    sn_fit_def def = fit_of(&tissue, &curve, 1);
+    sn_fit_def def = oracle_fit(&tissue, &curve, 1);
     sn_fit_choice choice;
     sn_fit_result *r = sn_alloc(1, sizeof *r);
     CHECK_OK(sn_fit_choose_terms(&def, true, 2, &choice, r));

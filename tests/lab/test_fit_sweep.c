@@ -46,22 +46,6 @@ static sn_tissue spectrum_tissue(const char *law, const double *value, int count
     return t;
 }
 
-static sn_fit_def fit_of(const sn_tissue *tissue, const sn_curve *curve, int count) {
-    sn_fit_def def = sn_fit_def_default();
-    def.law = tissue->law;
-    def.memory = tissue->memory.law->param_count > 0 ? tissue->memory.law : NULL;
-    def.curve = curve;
-    def.curve_count = count;
-    return def;
-}
-
-static const sn_fit_param *param_of(const sn_fit_result *r, const char *name) {
-    for (int k = 0; k < r->param_count; ++k)
-        if (strcmp(r->param[k].name, name) == 0) return &r->param[k];
-    fail_msg("no parameter %s", name);
-    return NULL;
-}
-
 //---- reading -------------------------------------------------------------------------------------
 
 static void records_become_sweeps(void **state) {
@@ -150,7 +134,7 @@ static void exact_sweep_gives_its_constants(void **state) {
     const double E = 2e4;
     sn_tissue t = spectrum_tissue("linear", &E, 1);
     sn_curve c = sweep(&t, 1.0, 0.0, &seed);
-    sn_fit_def def = fit_of(&t, &c, 1);
+    sn_fit_def def = oracle_fit(&t, &c, 1);
     sn_fit_result r;
     CHECK_OK(sn_fit(&def, &r));
     assert_true(r.points == 2 * ROWS && r.converged && r.identifiable);
@@ -171,7 +155,7 @@ static void noisy_sweeps_are_within_their_intervals(void **state) {
     int missed = 0;
     for (int set = 0; set < 5; ++set) {
         sn_curve c = sweep(&t, 1.0, 0.01, &seed);
-        sn_fit_def def = fit_of(&t, &c, 1);
+        sn_fit_def def = oracle_fit(&t, &c, 1);
         sn_fit_result r;
         CHECK_OK(sn_fit(&def, &r));
         assert_true(r.converged && r.identifiable && r.param_count == 4);
@@ -195,7 +179,7 @@ static void sweep_and_pull_are_fitted_together(void **state) {
     sn_tissue t = spectrum_tissue("exponential", (double[]){12.0, 8e3}, 2);
     sn_curve c[2] = {sweep(&t, 1.1, 0.01, &seed), oracle_test(&t, SN_PROTOCOL_RELAXATION, 2.0, 60)};
     oracle_noise(&c[1], 0.003 * oracle_peak(&c[1]), &seed);
-    sn_fit_def def = fit_of(&t, c, 2);
+    sn_fit_def def = oracle_fit(&t, c, 2);
     def.weighting = SN_FIT_NOISE;
     sn_fit_result r;
     CHECK_OK(sn_fit(&def, &r));
@@ -203,7 +187,7 @@ static void sweep_and_pull_are_fitted_together(void **state) {
     static const char *const names[] = {"B", "C", "c", "tau1", "tau2"};
     const double truth[] = {12.0, 8e3, 0.2, 0.05, 20.0};
     for (int k = 0; k < 5; ++k) {
-        const sn_fit_param *p = param_of(&r, names[k]);
+        const sn_fit_param *p = oracle_param(&r, names[k]);
         // three half widths of a 95 % interval: never left by noise
         double half = 0.5 * (p->ci95[1] - p->ci95[0]);
         CHECK_ABS(p->value, truth[k], 3.0 * half);
@@ -214,17 +198,17 @@ static void sweep_and_pull_are_fitted_together(void **state) {
     sn_fit_release(&r);
 
     // the pull alone hides tau1 = 0.05 s in its ramp of 2 s
-    def = fit_of(&t, c + 1, 1);
+    def = oracle_fit(&t, c + 1, 1);
     CHECK_OK(sn_fit(&def, &r));
-    assert_false(param_of(&r, "tau1")->identifiable);
+    assert_false(oracle_param(&r, "tau1")->identifiable);
     sn_fit_release(&r);
     // the sweep alone knows one slope: B and C are told from each other by nothing
-    def = fit_of(&t, c, 1);
+    def = oracle_fit(&t, c, 1);
     CHECK_OK(sn_fit(&def, &r));
-    const sn_fit_param *B = param_of(&r, "B");
+    const sn_fit_param *B = oracle_param(&r, "B");
     assert_false(B->identifiable);
     assert_non_null(strstr(B->reason, "every sweep is about the stretch 1.1"));
-    assert_true(param_of(&r, "tau1")->identifiable);
+    assert_true(oracle_param(&r, "tau1")->identifiable);
     sn_fit_release(&r);
     for (int k = 0; k < 2; ++k) sn_curve_release(&c[k]);
 }
@@ -236,7 +220,7 @@ static void solid_is_fitted_from_two_stretches(void **state) {
     uint64_t seed = 4;
     sn_tissue t = spectrum_tissue("demiray", (double[]){5e3, 3.0, (double)INFINITY}, 3);
     sn_curve c[2] = {sweep(&t, 1.02, 0.0, &seed), sweep(&t, 1.2, 0.0, &seed)};
-    sn_fit_def def = fit_of(&t, c, 2);
+    sn_fit_def def = oracle_fit(&t, c, 2);
     sn_fit_result r;
     CHECK_OK(sn_fit(&def, &r));
     assert_true(r.converged);
@@ -264,10 +248,10 @@ static void times_outside_are_said(void **state) {
     t.memory = oracle_memory("fung-spectrum", 0, (double[]){0.2, 1e-3, 1e4}, 3);
     sn_curve c = sweep(&t, 1.0, 0.01, &seed);
     cut(&c, 6, 12); // to some 20 mHz and 3 Hz: 1/omega from 0.05 s to 8 s
-    sn_fit_def def = fit_of(&t, &c, 1);
+    sn_fit_def def = oracle_fit(&t, &c, 1);
     sn_fit_result r;
     CHECK_OK(sn_fit(&def, &r));
-    const sn_fit_param *fast = param_of(&r, "tau1"), *slow = param_of(&r, "tau2");
+    const sn_fit_param *fast = oracle_param(&r, "tau1"), *slow = oracle_param(&r, "tau2");
     assert_false(fast->identifiable);
     assert_non_null(strstr(fast->reason, "of the fastest oscillation"));
     assert_false(slow->identifiable);
