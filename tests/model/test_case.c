@@ -128,14 +128,20 @@ static void free_motions_of_few_nodes(void **state) {
     sn_case_destroy(c);
 }
 
-static void on_mesh(void **state) {
-    (void)state;
-    sn_case *c = block_case(), *copy = NULL;
+// a block held on the left, pulled to the right, poked and watched
+static sn_case *loaded_case(void) {
+    sn_case *c = block_case();
     hold(c, "left", "xyz");
     move(c, "right", 0.001, NAN, NAN)->factor = ramp(0, 1, 0.5);
     add_sphere(c, "ball", 0.002, 0.01, 0.01, 0.03);
     CHECK_OK(sn_history_create(3, 1, (double[]){0}, (double[]){0, 0, -0.001}, &c->tool[0].path));
     add_probe(c, "tip", SN_PROBE_POINT, 0.01, 0.01, 0.01, NULL);
+    return c;
+}
+
+static void on_mesh(void **state) {
+    (void)state;
+    sn_case *c = loaded_case(), *copy = NULL;
     strcpy(c->name, "pull");
     sn_mesh *fine = NULL;
     CHECK_OK(sn_mesh_refine(c->mesh, &fine));
@@ -262,12 +268,7 @@ static void defaults(void **state) {
 // Every number that an engine's state depends on changes the fingerprint; nothing else does.
 static void fingerprints(void **state) {
     (void)state;
-    sn_case *c = block_case(), *copy = NULL;
-    hold(c, "left", "xyz");
-    move(c, "right", 0.001, NAN, NAN)->factor = ramp(0, 1, 0.5);
-    add_sphere(c, "ball", 0.002, 0.01, 0.01, 0.03);
-    CHECK_OK(sn_history_create(3, 1, (double[]){0}, (double[]){0, 0, -0.001}, &c->tool[0].path));
-    add_probe(c, "tip", SN_PROBE_POINT, 0.01, 0.01, 0.01, NULL);
+    sn_case *c = loaded_case(), *copy = NULL;
     const uint64_t own = sn_case_fingerprint(c);
     double *const numbers[] = {&c->mesh->node[5],
                                &c->tissue[0].value[0],
