@@ -512,7 +512,8 @@ typedef struct sn_tangent_call {
 void sn_tangent_assemble(const sn_net *net, sn_tangent *tangent, const sn_tangent_call *call);
 /// Adds a 3 x 3 block at a node (contact).
 void sn_tangent_add(sn_tangent *tangent, int node, const double block[9]);
-/// A sn_tangent_sink that adds the symmetric part of a block to the tangent `context`.
+/// A sn_tangent_sink that adds a block, which friction may make unsymmetric, to the tangent
+/// `context`.
 void sn_tangent_add_contact(void *context, int node, const double block[9]);
 /// Adds factor times the mass of each node.
 void sn_tangent_add_mass(const sn_net *net, sn_tangent *tangent, double factor);
@@ -523,9 +524,10 @@ void sn_tangent_lower(sn_tangent *tangent, int count, const double *vectors, dou
 void sn_tangent_prepare(const sn_net *net, sn_tangent *tangent);
 /// y <- K x, all directions. x, y: (nodes x 3).
 void sn_tangent_multiply(const sn_net *net, sn_tangent *tangent, const double *x, double *y);
-/// Solves K x = b in the free directions (b is 0 elsewhere) by conjugate gradients from the x
-/// given, until the residual is at most `target` in norm. x is 0 in prescribed directions.
-/// @return iterations; negative where a direction of negative curvature ended it.
+/// Solves K x = b in the free directions (b is 0 elsewhere) by conjugate gradients (BiCGSTAB where
+/// K is unsymmetric) from the x given, until the residual is at most `target` in norm. x is 0 in
+/// prescribed directions. @return iterations; negative where a direction of negative curvature or a
+/// breakdown ended it.
 int sn_tangent_solve(const sn_net *net, sn_tangent *tangent, const double *b, double target,
                      double *x);
 

@@ -83,8 +83,12 @@ sn_status sn_tangent_create(const sn_net *net, sn_tangent **tangent) {
     t->z = sn_alloc(n, sizeof *t->z);
     t->p = sn_alloc(n, sizeof *t->p);
     t->q = sn_alloc(n, sizeof *t->q);
+    for (int k = 0; k < net->tool_count; k++) t->rubs = t->rubs || net->tool[k].friction > 0;
+    t->shadow = sn_alloc(t->rubs ? n : 0, sizeof *t->shadow);
+    t->y = sn_alloc(t->rubs ? n : 0, sizeof *t->y);
+    t->v = sn_alloc(t->rubs ? n : 0, sizeof *t->v);
     status = t->block && t->flux && t->stiffness && t->along && t->inverse && t->r && t->z &&
-                     t->p && t->q
+                     t->p && t->q && t->shadow && t->y && t->v
                  ? SN_OK
                  : SN_E_MEMORY;
 fail:
@@ -110,7 +114,10 @@ void sn_tangent_destroy(sn_tangent *t) {
                    t->r,
                    t->z,
                    t->p,
-                   t->q};
+                   t->q,
+                   t->shadow,
+                   t->y,
+                   t->v};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(t);
 }
@@ -326,6 +333,7 @@ static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *re
 
 void sn_tangent_assemble(const sn_net *net, sn_tangent *t, const sn_tangent_call *call) {
     law_values law;
+    t->unsymmetric = false;
     memset(t->block, 0, (size_t)t->cells.start[net->nodes] * 9 * sizeof *t->block);
     if (net->volume)
         memset(t->flux, 0, (size_t)t->points.start[t->points.rows] * 3 * sizeof *t->flux);
@@ -352,13 +360,10 @@ void sn_tangent_add(sn_tangent *t, int node, const double block[9]) {
     for (int k = 0; k < 9; k++) to[k] += block[k];
 }
 
-// conjugate gradients want the symmetric part, which is all of it but for friction
 void sn_tangent_add_contact(void *context, int node, const double block[9]) {
-    double symmetric[9];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            symmetric[3 * i + j] = 0.5 * (block[3 * i + j] + block[3 * j + i]);
-    sn_tangent_add(context, node, symmetric);
+    sn_tangent *t = context;
+    t->unsymmetric = t->rubs; // else it is symmetric to rounding
+    sn_tangent_add(t, node, block);
 }
 
 void sn_tangent_add_mass(const sn_net *net, sn_tangent *t, double factor) {
@@ -412,12 +417,6 @@ void sn_tangent_prepare(const sn_net *net, sn_tangent *t) {
     }
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 void sn_tangent_multiply(const sn_net *net, sn_tangent *t, const double *x, double *y) {
     for (int i = 0; i < net->nodes; i++) {
         double a = 0, b = 0, c = 0;
@@ -446,50 +445,7 @@ void sn_tangent_multiply(const sn_net *net, sn_tangent *t, const double *x, doub
     }
     const size_t n = (size_t)net->nodes * 3;
     for (int k = 0; k < t->lowered; k++) {
-        const double *b = t->lower + (size_t)k * n, off = t->lower_factor * dot(b, x, n);
+        const double *b = t->lower + (size_t)k * n, off = t->lower_factor * sn_dot(b, x, n);
         for (size_t i = 0; i < n; i++) y[i] -= off * b[i];
     }
-}
-
-//---- solver --------------------------------------------------------------------------------------
-
-static void hold(const sn_net *net, double *x) {
-    for (int k = 0; k < net->fixed_count; k++)
-        x[3 * net->fixed[k].node + net->fixed[k].direction] = 0.0;
-}
-
-static void precondition(const sn_net *net, const sn_tangent *t, const double *r, double *z) {
-    for (int i = 0; i < net->nodes; i++) {
-        const double *m = t->inverse + 9 * (size_t)i, *v = r + 3 * (size_t)i;
-        for (int d = 0; d < 3; d++)
-            z[3 * i + d] = m[3 * d] * v[0] + m[3 * d + 1] * v[1] + m[3 * d + 2] * v[2];
-    }
-}
-
-int sn_tangent_solve(const sn_net *net, sn_tangent *t, const double *b, double target, double *x) {
-    const size_t n = (size_t)net->nodes * 3;
-    const int most = 200 + 20 * (int)sqrt((double)n) + (int)n / 4;
-    sn_tangent_multiply(net, t, x, t->q);
-    hold(net, t->q);
-    for (size_t i = 0; i < n; i++) t->r[i] = b[i] - t->q[i];
-    precondition(net, t, t->r, t->z);
-    memcpy(t->p, t->z, n * sizeof *t->p);
-    double rz = dot(t->r, t->z, n);
-    int turn = 0;
-    for (; turn < most && dot(t->r, t->r, n) > target * target; turn++) {
-        sn_tangent_multiply(net, t, t->p, t->q);
-        hold(net, t->q);
-        double pq = dot(t->p, t->q, n);
-        if (!(pq > 0)) return turn == 0 ? -1 : -turn;
-        double a = rz / pq;
-        for (size_t i = 0; i < n; i++) {
-            x[i] += a * t->p[i];
-            t->r[i] -= a * t->q[i];
-        }
-        precondition(net, t, t->r, t->z);
-        double next = dot(t->r, t->z, n), ratio = next / rz;
-        rz = next;
-        for (size_t i = 0; i < n; i++) t->p[i] = t->z[i] + ratio * t->p[i];
-    }
-    return turn;
 }

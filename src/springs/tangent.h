@@ -22,7 +22,10 @@ struct sn_tangent {
     int lowered;        // vectors taken off
     const double *lower;
     double lower_factor;
-    double *r, *z, *p, *q;      // scratch of the solver
+    bool rubs;                  // friction may make it unsymmetric
+    bool unsymmetric;           // it has
+    double *r, *z, *p, *q;      // scratch of the solvers
+    double *shadow, *y, *v;     // of the unsymmetric one, where friction may be
     struct sn_cluster *cluster; // scratch of the smoothed edges
 };
 
@@ -56,6 +59,12 @@ static inline double sn_tangent_stress(const sn_net_region *region, const sn_tan
                                        double alpha, size_t first, size_t at, double T) {
     if (region->branches == 0 || !call->factors) return T;
     return alpha * T + call->history[first + at];
+}
+
+static inline double sn_dot(const double *a, const double *b, size_t n) {
+    double sum = 0;
+    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
 }
 
 //---- smoothed edges (springs/tangent_edges.c) ----------------------------------------------------
