@@ -89,6 +89,8 @@ typedef struct sn_vtu sn_vtu;
 /// @param folder  exists already; files are folder/name.pvd and folder/name_0000.vtu …
 SN_API sn_status sn_vtu_create(const char *folder, const char *name, const sn_mesh *mesh,
                                sn_vtu **vtu);
+/// Cells where the field "removed" is not 0 are left out of the file; an array "cell" then says
+/// which are there.
 SN_API sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame);
 /// Takes up a collection of an earlier run in the same folder: its frames stay listed, and new ones
 /// are numbered after them. Comes before the first sn_vtu_frame().

@@ -86,6 +86,13 @@ SN_API sn_status sn_mesh_finish(sn_mesh *mesh);
 SN_API sn_status sn_mesh_refine(const sn_mesh *mesh, sn_mesh **fine);
 /// An equal mesh. @return SN_OK, SN_E_MEMORY.
 SN_API sn_status sn_mesh_copy(const sn_mesh *mesh, sn_mesh **copy);
+/// The mesh without some of its cells, and without nodes that then belong to none. Regions and
+/// surfaces stay, with the faces whose cell is there; "boundary" is the new outside.
+/// @param removed  cells to leave out                         (cell_count)
+/// @param node     Nullable: number in `mesh` of each node that is left; room for all of `mesh`
+/// @return SN_OK, SN_E_MESH (no cell is left), SN_E_MEMORY.
+SN_API sn_status sn_mesh_without(const sn_mesh *mesh, const bool *removed, sn_mesh **rest,
+                                 int *node);
 /// Index of a surface by name; -1 with a text (and a suggestion) stored when there is none.
 SN_API int sn_mesh_surface(const sn_mesh *mesh, const char *name);
 /// Nodes of a surface, each once, rising. *nodes is sn_alloc'd for the caller.
@@ -165,6 +172,24 @@ typedef struct sn_probe {
     int surface;     ///< reaction: force that the support or prescribed motion exerts on the body
 } sn_probe;
 
+//---- cuts ----------------------------------------------------------------------------------------
+
+typedef enum sn_cut_kind {
+    SN_CUT_SPHERE, ///< cells whose centre is in a sphere
+    SN_CUT_BOX,    ///< cells whose centre is in a box along the axes
+    SN_CUT_CELLS   ///< cells by number
+} sn_cut_kind;
+
+/// Cells that are taken out of the body during a run: by where they are at rest.
+typedef struct sn_cut_def {
+    double at; ///< when, s; 0: before the first step
+    sn_cut_kind kind;
+    double centre[3], radius; ///< sphere, m
+    double low[3], high[3];   ///< box, m
+    int cell_count;           ///< cells
+    int *cell;                ///< numbers in the mesh, from 0, owned (cell_count)
+} sn_cut_def;
+
 //---- settings of the engines ---------------------------------------------------------------------
 
 typedef enum sn_rung { SN_RUNG_CENTRAL, SN_RUNG_COUPLED, SN_RUNG_SMOOTHED } sn_rung;
@@ -194,6 +219,7 @@ typedef struct sn_springs_def {
     double stiffness_damping; ///< stiffness-proportional Rayleigh coefficient, s: a stress of this
                               ///< times the rate of the instantaneous elastic stress
     double memory_tolerance;  ///< largest error of the exponentials, of G(0)
+    bool cuttable; ///< a program may remove cells (sn_state_cut); with cuts in the case it may
 } sn_springs_def;
 
 typedef enum sn_element { SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1 } sn_element;
@@ -232,6 +258,8 @@ typedef struct sn_case {
     sn_load *load;
     sn_tool *tool;
     sn_probe *probe;
+    int cut_count;
+    sn_cut_def *cut;     ///< in any order of times
     double until;        ///< seconds
     double output_every; ///< seconds
     sn_springs_def springs;
@@ -243,8 +271,10 @@ SN_API sn_status sn_case_create(sn_case **c);
 SN_API void sn_case_destroy(sn_case *c); // NULL is allowed
 /// The same case on another mesh with the same surfaces and regions (by index). Takes the mesh
 /// unless it fails. Everything else is copied, so both may be destroyed; has_shape stays where the
-/// mesh has as many nodes and cells as before, else it is cleared.
-/// @return SN_OK, SN_E_DEFINITION (regions or surfaces differ), SN_E_MEMORY.
+/// mesh has as many nodes and cells as before, else it is cleared. Cuts by a region take the cells
+/// that the region has on the new mesh.
+/// @return SN_OK, SN_E_DEFINITION (regions or surfaces differ; cuts of numbered cells on a mesh
+/// with another number of cells), SN_E_MEMORY.
 SN_API sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy);
 /// Checks what no reader of one key can see: tissues in range and fit for three dimensions, a fibre
 /// where a law needs one, probes inside the body, loads and supports that contradict each other,
@@ -265,6 +295,9 @@ SN_API void sn_case_free_motions(const sn_case *c, char text[SN_TEXT_MAX]);
 /// The surface whose prescribed motion is all that acts on the body, so that at rest it would only
 /// be carried along undeformed (as a rule, the supports were forgotten); -1 when there is more.
 SN_API int sn_case_carried_by(const sn_case *c);
+/// The cells of cut k of a case, rising. *cells is sn_alloc'd for the caller.
+/// @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_case_cut_cells(const sn_case *c, int k, int **cells, int *count);
 /// Names of the history columns of the case in the order engines fill them: time, then for a point
 /// probe NAME_ux NAME_uy NAME_uz [m], for a reaction or a tool NAME_fx NAME_fy NAME_fz [N].
 SN_API sn_status sn_case_history_columns(const sn_case *c, sn_record *history);
@@ -359,6 +392,8 @@ typedef struct sn_run_summary {
     double memory_J;  ///< springs: stored in the branches of the memory
     double instant_J; ///< of the instantaneous law, W + U, whatever has relaxed
     double dissipated_J, external_work_J;
+    double released_J; ///< springs: of dissipated_J, what cuts took: what removed cells had stored
+    int cells_removed; ///< springs: by cuts
     double energy_residual; ///< relative to the largest of the terms
     int memory_terms;
     double memory_error;     ///< stated error of the exponentials, of G(0)

@@ -47,7 +47,7 @@ SN_API sn_status sn_net_set_spring_stiffness(sn_net *net, const double *stiffnes
 
 SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
 SN_API void sn_state_destroy(sn_state *state); // NULL is allowed
-/// Back to rest.
+/// Back to rest, and whole.
 SN_API void sn_state_reset(const sn_net *net, sn_state *state);
 //---- what a program changes between two steps ----------------------------------------------------
 
@@ -71,6 +71,22 @@ SN_API int sn_state_grasp(const sn_net *net, sn_state *state, int tool, int coun
                           const int *nodes);
 /// Lets go of all nodes that a tool holds; they keep their velocity.
 SN_API void sn_state_release(const sn_net *net, sn_state *state, int tool);
+/// Removes cells for good, of a net built with springs.cuttable or from a case with cuts (which
+/// runs carry out by themselves). Their stiffness, memory and volume are gone; places, velocities
+/// and masses of nodes stay. Loads on their faces end; nodes that come to the surface touch tools.
+/// A node that has lost all its cells is loose: it flies by itself, with its weight, and no tool
+/// touches or holds it. Cells that are gone already count for nothing. Allocates nothing, and takes
+/// about as long as some twenty steps.
+/// @param cells    numbers in the mesh                              (count)
+/// @param removed  Nullable: how many there were to remove
+/// @return SN_OK, SN_E_UNSUPPORTED (the net is not cuttable), SN_E_RANGE (no such cell: nothing was
+/// cut).
+SN_API sn_status sn_state_cut(const sn_net *net, sn_state *state, int count, const int *cells,
+                              int *removed);
+/// Whether a cell of the mesh was removed.
+SN_API bool sn_state_is_cut(const sn_net *net, const sn_state *state, int cell);
+/// Whether a node of the mesh has lost all its cells.
+SN_API bool sn_state_is_loose(const sn_net *net, const sn_state *state, int node);
 /// Goes on with another net of the same mesh, tissues with other constants, other loads or other
 /// settings: what a state carries over is place, velocity, time, tools and contact. Memory is kept
 /// where all regions have as many exponentials as before; else it begins anew, as if the present

@@ -43,6 +43,8 @@ static json_t *summary_json(const sn_run_summary *s, const sn_record *history,
     cli_put_number(json, "elastic_J", s->elastic_J);
     cli_put_number(json, "memory_J", s->memory_J);
     cli_put_number(json, "dissipated_J", s->dissipated_J);
+    cli_put_number(json, "released_J", s->released_J);
+    cli_put_integer(json, "cells_removed", s->cells_removed);
     cli_put_number(json, "external_work_J", s->external_work_J);
     cli_put_number(json, "energy_residual", s->energy_residual);
     cli_put_integer(json, "memory_terms", s->memory_terms);
@@ -66,7 +68,9 @@ typedef struct run_context {
     int earlier; ///< frames of the run that is resumed; -1 until they are known
     sn_refinement refinement;
     double *displacement; ///< of the last frame                    (nodes x 3)
-    sn_record *energy;    ///< rows of energy.csv; none where the engine gives none
+    int cells;
+    bool *removed;     ///< of the last frame, by cuts               (cells)
+    sn_record *energy; ///< rows of energy.csv; none where the engine gives none
 } run_context;
 
 static sn_status take_frame(void *context, const sn_frame *frame) {
@@ -79,6 +83,9 @@ static sn_status take_frame(void *context, const sn_frame *frame) {
         if (strcmp(frame->fields[k].name, "displacement") == 0)
             memcpy(r->displacement, frame->fields[k].value,
                    (size_t)r->nodes * 3 * sizeof *r->displacement);
+    for (int k = 0; k < frame->field_count; k++)
+        for (int e = 0; strcmp(frame->fields[k].name, "removed") == 0 && e < r->cells; e++)
+            r->removed[e] = frame->fields[k].value[e] != 0;
     return r->vtu ? sn_vtu_frame(r->vtu, frame) : SN_OK;
 }
 
@@ -141,6 +148,32 @@ static void summary_table(sn_report *report, const sn_run_summary *s) {
     sn_report_table(report, (int)(sizeof cells / sizeof cells[0]) / 2, 2, cells, "Summary");
 }
 
+// the body without the cells that cuts removed
+static sn_status add_body(sn_report *report, const sn_case *c, const run_context *r) {
+    const size_t nodes = (size_t)r->nodes;
+    sn_mesh *rest = NULL;
+    int left = 0;
+    for (int e = 0; e < r->cells; e++) left += !r->removed[e];
+    if (left == 0) return SN_OK;
+    int *name = sn_alloc(nodes, sizeof *name);
+    double *way = sn_alloc(nodes * 3, sizeof *way), *length = sn_alloc(nodes, sizeof *length);
+    sn_status status = name && way && length ? SN_OK : SN_E_MEMORY;
+    if (status == SN_OK) status = sn_mesh_without(c->mesh, r->removed, &rest, name);
+    if (status == SN_OK) {
+        for (int i = 0; i < rest->node_count; i++) {
+            memcpy(way + 3 * i, r->displacement + 3 * name[i], 3 * sizeof *way);
+            length[i] = hypot(hypot(way[3 * i], way[3 * i + 1]), way[3 * i + 2]);
+        }
+        sn_body body = {c->name, "displacement [mm]", rest, way, length, 0, 1e3};
+        sn_report_bodies(report, 1, &body, "The body at the last output time. Drag to turn it.");
+    }
+    sn_mesh_destroy(rest);
+    sn_free(name);
+    sn_free(way);
+    sn_free(length);
+    return status;
+}
+
 static sn_status write_report(const char *path, const sn_case *c, const sn_run_summary *s,
                               const sn_record *history, const run_context *r) {
     sn_report *report;
@@ -151,18 +184,11 @@ static sn_status write_report(const char *path, const sn_case *c, const sn_run_s
     run_refinement_report(&r->refinement, report);
     if (*s->reason) sn_report_text(report, "The run ended early: %s", s->reason);
     if (*s->note) sn_report_text(report, "Note: %s", s->note);
-    double *magnitude = sn_alloc((size_t)r->nodes, sizeof *magnitude);
-    sn_status status = magnitude ? SN_OK : SN_E_MEMORY;
-    if (magnitude) {
-        for (int i = 0; i < r->nodes; i++)
-            magnitude[i] = hypot(hypot(r->displacement[3 * i], r->displacement[3 * i + 1]),
-                                 r->displacement[3 * i + 2]);
-        sn_body body = {c->name, "displacement [mm]", c->mesh, r->displacement, magnitude, 0, 1e3};
-        sn_report_bodies(report, 1, &body, "The body at the last output time. Drag to turn it.");
+    sn_status status = add_body(report, c, r);
+    if (status == SN_OK) {
         history_plots(report, history);
         status = sn_report_write(report, path);
     }
-    sn_free(magnitude);
     sn_report_destroy(report);
     return status;
 }
@@ -196,6 +222,9 @@ static void print_summary(const sn_run_summary *s, const sn_record *history,
     for (int k = 1; history->rows > 0 && k < history->series_count; k++)
         printf("  %-24s %s\n", history->series[k].name,
                cli_show(history->series[k].value[history->rows - 1], history->series[k].unit));
+    if (s->cells_removed)
+        printf("  cut: %d cells removed, %s released\n", s->cells_removed,
+               cli_show(s->released_J, "J"));
     run_refinement_print(refinement);
     if (*s->note) printf("  note: %s\n", s->note);
     if (folder)
@@ -243,7 +272,9 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
     output.energy = o->folder ? r.energy : NULL;
     r.nodes = c->mesh->node_count;
     r.displacement = sn_alloc((size_t)r.nodes, 3 * sizeof *r.displacement);
-    if (!r.displacement) {
+    r.cells = c->mesh->cell_count;
+    r.removed = sn_alloc((size_t)r.cells, sizeof *r.removed);
+    if (!r.displacement || !r.removed) {
         status = SN_E_MEMORY;
         goto fail;
     }
@@ -267,6 +298,7 @@ fail:
     sn_vtu_destroy(r.vtu);
     sn_refinement_release(&r.refinement);
     sn_free(r.displacement);
+    sn_free(r.removed);
     sn_record_destroy(r.energy);
     sn_record_destroy(history);
     sn_case_destroy(c);

@@ -16,6 +16,9 @@ static sn_status check(const sn_case *c) {
                            "continuum: tool \"%s\": grasp is not supported; it runs on the engine "
                            "springs, integrator explicit",
                            c->tool[t].name);
+    if (c->cut_count > 0)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "continuum: cuts are not supported; they run on the engine springs");
     if (!(c->continuum.tolerance > 0.0) || !(c->continuum.memory_tolerance > 0.0))
         return sn_fail(
             SN_E_RANGE,

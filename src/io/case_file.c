@@ -171,11 +171,11 @@ static sn_status read_settings(const sn_yaml *root, sn_case *c) {
 }
 
 static sn_status read_case(const sn_yaml *root, sn_case *c) {
-    static const char *const keys[] = {"case",    "mesh",     "tissue",  "fibres",
-                                       "gravity", "supports", "loads",   "tools",
-                                       "probes",  "time",     "springs", "continuum"};
+    static const char *const keys[] = {"case",     "mesh",      "tissue", "fibres", "gravity",
+                                       "supports", "loads",     "tools",  "probes", "time",
+                                       "springs",  "continuum", "cuts"};
     const sn_yaml *node;
-    SN_TRY(sn_yaml_map(root, keys, 12));
+    SN_TRY(sn_yaml_map(root, keys, 13));
     // what is cheap to check comes before the mesh is built
     SN_TRY(read_settings(root, c));
     SN_TRY(sn_yaml_need(root, "tissue", &node));
@@ -186,6 +186,7 @@ static sn_status read_case(const sn_yaml *root, sn_case *c) {
     if ((node = sn_yaml_get(root, "loads"))) SN_TRY(sn_case_read_loads(node, c));
     if ((node = sn_yaml_get(root, "tools"))) SN_TRY(sn_case_read_tools(node, c));
     if ((node = sn_yaml_get(root, "probes"))) SN_TRY(sn_case_read_probes(node, c));
+    if ((node = sn_yaml_get(root, "cuts"))) SN_TRY(sn_case_read_cuts(node, c));
     sn_status status = sn_case_check(c);
     return status == SN_OK ? SN_OK : sn_fail_within(status, "%s", root->file);
 }

@@ -8,11 +8,12 @@
 sn_status sn_case_read_mesh(const sn_yaml *node, sn_case *c);
 /// `tissue`: one file, or a file for every region of the mesh.
 sn_status sn_case_read_tissues(const sn_yaml *node, sn_case *c);
-/// `supports`, `loads`, `tools`, `probes`: lists; the mesh is there already.
+/// `supports`, `loads`, `tools`, `probes`, `cuts`: lists; the mesh is there already.
 sn_status sn_case_read_supports(const sn_yaml *node, sn_case *c);
 sn_status sn_case_read_loads(const sn_yaml *node, sn_case *c);
 sn_status sn_case_read_tools(const sn_yaml *node, sn_case *c);
 sn_status sn_case_read_probes(const sn_yaml *node, sn_case *c);
+sn_status sn_case_read_cuts(const sn_yaml *node, sn_case *c);
 /// A list of supports, loads, tools or probes, and room for them, `size` bytes each.
 sn_status sn_case_read_items(const sn_yaml *node, const char *what, size_t size, void **items);
 /// [[time, value…], …] with `channels` values of one unit after each time.

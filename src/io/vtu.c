@@ -11,6 +11,9 @@
 // Name is the field's name alone, because scripts look arrays up by it (meshio's
 // point_data["displacement"], ParaView's calculator). The unit goes with the array as VTK's own key
 // UNITS_LABEL, and a symmetric tensor has its six components in VTK's order, xx yy zz xy yz xz.
+//
+// Cells that a field "removed" marks are left out, with their values; an array "cell" says which
+// are there. Nodes all stay.
 #include <stdint.h>
 #include <string.h>
 
@@ -29,8 +32,14 @@ struct sn_vtu {
     char *folder, *name;
     size_t node_count, cell_count;
     int frames;
-    sn_buffer grid; ///< Points and Cells, the same in every frame
+    sn_buffer points; ///< the same in every frame
+    sn_buffer cells;  ///< of frames that have them all
     sn_buffer regions;
+    sn_buffer names;    ///< of the regions
+    int *cell, *region; ///< of the mesh
+    int *kept;          ///< cells of a frame that has removed ones
+    double *values;     ///< of these, 6 each at most
+    size_t kept_count;
     sn_buffer list; ///< the DataSet lines of the collection
     sn_buffer file; ///< the file being written
     sn_buffer path;
@@ -63,18 +72,21 @@ static void add_array(sn_buffer *out, const char *type, const char *name, int co
     sn_buffer_text(out, "</DataArray>\n");
 }
 
-static sn_status add_grid(sn_buffer *out, const sn_mesh *mesh) {
-    size_t cells = (size_t)mesh->cell_count;
+static void add_points(sn_buffer *out, const sn_mesh *mesh) {
+    sn_buffer_text(out, "<Points>\n");
+    add_array(out, "Float64", "Points", 3, mesh->node,
+              3 * (size_t)mesh->node_count * sizeof(double));
+    sn_buffer_text(out, "</Points>\n");
+}
+
+static sn_status add_cells(sn_buffer *out, size_t cells, const int *nodes) {
     int32_t *ends = sn_alloc(cells, sizeof *ends);
     uint8_t *types = sn_alloc(cells, 1);
     if (ends && types) {
         for (size_t c = 0; c < cells; c++) ends[c] = (int32_t)(4 * (c + 1));
         memset(types, VTK_TETRA, cells);
-        sn_buffer_text(out, "<Points>\n");
-        add_array(out, "Float64", "Points", 3, mesh->node,
-                  3 * (size_t)mesh->node_count * sizeof(double));
-        sn_buffer_text(out, "</Points>\n<Cells>\n");
-        add_array(out, "Int32", "connectivity", 1, mesh->cell, 4 * cells * sizeof(int));
+        sn_buffer_text(out, "<Cells>\n");
+        add_array(out, "Int32", "connectivity", 1, nodes, 4 * cells * sizeof(int));
         add_array(out, "Int32", "offsets", 1, ends, cells * sizeof *ends);
         add_array(out, "UInt8", "types", 1, types, cells);
         sn_buffer_text(out, "</Cells>\n");
@@ -85,9 +97,8 @@ static sn_status add_grid(sn_buffer *out, const sn_mesh *mesh) {
     return status;
 }
 
-// Numbers of regions as a field, their names as a remark.
-static void add_regions(sn_buffer *out, const sn_mesh *mesh) {
-    add_array(out, "Int32", "region", 1, mesh->region, (size_t)mesh->cell_count * sizeof(int));
+// Numbers of regions stand in a field, their names in a remark.
+static void add_names(sn_buffer *out, const sn_mesh *mesh) {
     sn_buffer_text(out, "<!-- regions:");
     for (int r = 0; r < mesh->region_count; r++) {
         sn_buffer_print(out, " %d ", r);
@@ -109,12 +120,22 @@ sn_status sn_vtu_create(const char *folder, const char *name, const sn_mesh *mes
     sn_status status = SN_E_MEMORY;
     made->node_count = (size_t)mesh->node_count;
     made->cell_count = (size_t)mesh->cell_count;
+    const size_t numbers = 4 * made->cell_count;
+    made->cell = sn_alloc(numbers, sizeof(int));
+    made->region = sn_alloc(made->cell_count, sizeof(int));
+    if (!made->cell || !made->region) goto fail;
+    if (numbers > 0) memcpy(made->cell, mesh->cell, numbers * sizeof(int));
+    if (numbers > 0) memcpy(made->region, mesh->region, made->cell_count * sizeof(int));
     made->folder = copy_text(folder);
     made->name = copy_text(name);
     if (!made->folder || !made->name) goto fail;
-    SN_TRY_GOTO(status, add_grid(&made->grid, mesh));
-    add_regions(&made->regions, mesh);
+    add_points(&made->points, mesh);
+    SN_TRY_GOTO(status, made->points.status);
+    SN_TRY_GOTO(status, add_cells(&made->cells, made->cell_count, mesh->cell));
+    add_array(&made->regions, "Int32", "region", 1, mesh->region, made->cell_count * sizeof(int));
     SN_TRY_GOTO(status, made->regions.status);
+    add_names(&made->names, mesh);
+    SN_TRY_GOTO(status, made->names.status);
     *vtu = made;
     return SN_OK;
 fail:
@@ -126,13 +147,89 @@ void sn_vtu_destroy(sn_vtu *vtu) {
     if (!vtu) return;
     sn_free(vtu->folder);
     sn_free(vtu->name);
-    sn_buffer_free(&vtu->grid);
+    sn_free(vtu->cell);
+    sn_free(vtu->region);
+    sn_free(vtu->kept);
+    sn_free(vtu->values);
+    sn_buffer_free(&vtu->points);
+    sn_buffer_free(&vtu->cells);
     sn_buffer_free(&vtu->regions);
+    sn_buffer_free(&vtu->names);
     sn_buffer_free(&vtu->list);
     sn_buffer_free(&vtu->file);
     sn_buffer_free(&vtu->path);
     sn_free(vtu);
 }
+
+//---- cells that are left -------------------------------------------------------------------------
+
+static bool is_mark(const sn_field *field) {
+    return field->place == SN_ON_CELLS && strcmp(field->name, "removed") == 0;
+}
+
+// the field that says which cells are not there; NULL where none can be missing
+static const double *find_mark(const sn_frame *frame) {
+    for (int f = 0; f < frame->field_count; f++)
+        if (is_mark(&frame->fields[f])) return frame->fields[f].value;
+    return NULL;
+}
+
+static sn_status list_kept(sn_vtu *vtu, const double *removed) {
+    if (!vtu->kept) vtu->kept = sn_alloc(vtu->cell_count, sizeof(int));
+    if (!vtu->values) vtu->values = sn_alloc(6 * vtu->cell_count, sizeof(double));
+    if (!vtu->kept || !vtu->values) return SN_E_MEMORY;
+    vtu->kept_count = 0;
+    for (size_t e = 0; e < vtu->cell_count; e++)
+        if (removed[e] == 0) vtu->kept[vtu->kept_count++] = (int)e;
+    return SN_OK;
+}
+
+// rows of whole numbers of the cells that are kept
+static sn_status add_kept(sn_vtu *vtu, bool grid) {
+    const int *from = grid ? vtu->cell : vtu->region;
+    const size_t wide = grid ? 4 : 1, count = vtu->kept_count;
+    int *rows = sn_alloc(wide * count, sizeof *rows);
+    if (!rows) return SN_E_MEMORY;
+    for (size_t k = 0; k < wide * count; k++)
+        rows[k] = from[wide * (size_t)vtu->kept[k / wide] + k % wide];
+    if (grid)
+        add_cells(&vtu->file, count, rows);
+    else
+        add_array(&vtu->file, "Int32", "region", 1, rows, count * sizeof *rows);
+    sn_free(rows);
+    return SN_OK;
+}
+
+static sn_status add_grid(sn_vtu *vtu, bool all) {
+    sn_buffer_add(&vtu->file, vtu->points.text, vtu->points.size);
+    if (!all) return add_kept(vtu, true);
+    sn_buffer_add(&vtu->file, vtu->cells.text, vtu->cells.size);
+    return SN_OK;
+}
+
+static sn_status add_regions(sn_vtu *vtu, bool all) {
+    if (all)
+        sn_buffer_add(&vtu->file, vtu->regions.text, vtu->regions.size);
+    else
+        SN_TRY(add_kept(vtu, false));
+    sn_buffer_add(&vtu->file, vtu->names.text, vtu->names.size);
+    if (vtu->kept)
+        add_array(&vtu->file, "Int32", "cell", 1, vtu->kept, vtu->kept_count * sizeof(int));
+    return SN_OK;
+}
+
+// a field without the values of removed cells
+static sn_field keep_values(sn_vtu *vtu, const sn_field *field) {
+    const size_t wide = (size_t)field->components;
+    sn_field kept = *field;
+    SN_ASSERT(wide <= 6);
+    for (size_t k = 0; k < wide * vtu->kept_count; k++)
+        vtu->values[k] = field->value[wide * (size_t)vtu->kept[k / wide] + k % wide];
+    kept.value = vtu->values;
+    return kept;
+}
+
+//---- frames --------------------------------------------------------------------------------------
 
 static void add_field(sn_buffer *out, const sn_field *field, size_t points) {
     SN_ASSERT(field->components >= 1);
@@ -148,11 +245,19 @@ static void add_field(sn_buffer *out, const sn_field *field, size_t points) {
     sn_buffer_text(out, "</DataArray>\n");
 }
 
-static void add_fields(sn_vtu *vtu, const sn_frame *frame, sn_place place) {
-    for (int f = 0; f < frame->field_count; f++)
-        if (frame->fields[f].place == place)
-            add_field(&vtu->file, &frame->fields[f],
-                      place == SN_ON_NODES ? vtu->node_count : vtu->cell_count);
+static void add_fields(sn_vtu *vtu, const sn_frame *frame, sn_place place, bool all) {
+    for (int f = 0; f < frame->field_count; f++) {
+        const sn_field *field = &frame->fields[f];
+        if (field->place != place || is_mark(field)) continue;
+        if (place == SN_ON_NODES) {
+            add_field(&vtu->file, field, vtu->node_count);
+        } else if (all) {
+            add_field(&vtu->file, field, vtu->cell_count);
+        } else {
+            const sn_field kept = keep_values(vtu, field);
+            add_field(&vtu->file, &kept, vtu->kept_count);
+        }
+    }
 }
 
 static void add_head(sn_buffer *out, const char *type) {
@@ -168,9 +273,12 @@ static void add_time(sn_buffer *out, double time) {
     sn_buffer_text(out, text);
 }
 
-static void fill_frame(sn_vtu *vtu, const sn_frame *frame) {
+static sn_status fill_frame(sn_vtu *vtu, const sn_frame *frame) {
     sn_buffer *out = &vtu->file;
+    const double *removed = find_mark(frame);
     out->size = 0;
+    if (removed) SN_TRY(list_kept(vtu, removed));
+    const bool all = !removed || vtu->kept_count == vtu->cell_count;
     add_head(out, "UnstructuredGrid");
     sn_buffer_text(out, "<UnstructuredGrid>\n<FieldData>\n<DataArray type=\"Float64\" "
                         "Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">");
@@ -178,14 +286,15 @@ static void fill_frame(sn_vtu *vtu, const sn_frame *frame) {
     sn_buffer_print(out,
                     "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"%zu\" "
                     "NumberOfCells=\"%zu\">\n",
-                    vtu->node_count, vtu->cell_count);
-    if (vtu->grid.size) sn_buffer_add(out, vtu->grid.text, vtu->grid.size);
+                    vtu->node_count, all ? vtu->cell_count : vtu->kept_count);
+    SN_TRY(add_grid(vtu, all));
     sn_buffer_text(out, "<PointData>\n");
-    add_fields(vtu, frame, SN_ON_NODES);
+    add_fields(vtu, frame, SN_ON_NODES, all);
     sn_buffer_text(out, "</PointData>\n<CellData>\n");
-    sn_buffer_add(out, vtu->regions.text, vtu->regions.size);
-    add_fields(vtu, frame, SN_ON_CELLS);
+    SN_TRY(add_regions(vtu, all));
+    add_fields(vtu, frame, SN_ON_CELLS, all);
     sn_buffer_text(out, "</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+    return SN_OK;
 }
 
 static void fill_collection(sn_vtu *vtu) {
@@ -218,7 +327,7 @@ sn_status sn_vtu_continue(sn_vtu *vtu, int frames, const double *time) {
 }
 
 sn_status sn_vtu_frame(sn_vtu *vtu, const sn_frame *frame) {
-    fill_frame(vtu, frame);
+    SN_TRY(fill_frame(vtu, frame));
     vtu->path.size = 0;
     sn_buffer_print(&vtu->path, "%s/%s_%04d.vtu", vtu->folder, vtu->name, vtu->frames);
     SN_TRY(write_file(vtu));

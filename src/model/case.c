@@ -45,6 +45,8 @@ void sn_case_destroy(sn_case *c) {
     for (int i = 0; i < c->tool_count; i++) sn_tool_release(&c->tool[i]);
     sn_free(c->tool);
     sn_free(c->probe);
+    for (int i = 0; i < c->cut_count; i++) sn_free(c->cut[i].cell);
+    sn_free(c->cut);
     sn_free(c);
 }
 
@@ -71,6 +73,25 @@ static sn_status copy_loads_and_tools(const sn_case *c, sn_case *to) {
     return SN_OK;
 }
 
+static sn_status copy_cuts(const sn_case *c, const sn_mesh *mesh, sn_case *to) {
+    to->cut = sn_alloc((size_t)c->cut_count, sizeof *to->cut);
+    if (!to->cut) return SN_E_MEMORY;
+    for (int i = 0; i < c->cut_count; i++) {
+        to->cut[i] = c->cut[i];
+        to->cut[i].cell = NULL;
+        to->cut_count = i + 1;
+        if (c->cut[i].kind != SN_CUT_CELLS) continue;
+        if (mesh->cell_count != c->mesh->cell_count)
+            return sn_fail(SN_E_DEFINITION,
+                           "cut %d: its numbers are of a mesh of %d cells, the other one has %d; "
+                           "give a sphere or a box",
+                           i + 1, c->mesh->cell_count, mesh->cell_count);
+        to->cut[i].cell = copy_array(c->cut[i].cell, c->cut[i].cell_count, sizeof(int));
+        if (!to->cut[i].cell) return SN_E_MEMORY;
+    }
+    return SN_OK;
+}
+
 static sn_status check_same_parts(const sn_mesh *from, const sn_mesh *to) {
     if (from->region_count != to->region_count)
         return sn_fail(SN_E_DEFINITION, "the other mesh has %d regions, the case has %d",
@@ -91,9 +112,10 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     sn_status status;
     *to = *c;
     to->mesh = NULL; // the caller's until all is done
-    to->load_count = to->tool_count = 0;
+    to->load_count = to->tool_count = to->cut_count = 0;
     to->load = NULL;
     to->tool = NULL;
+    to->cut = NULL;
     to->tissue = copy_array(c->tissue, c->mesh->region_count, sizeof *c->tissue);
     to->support = copy_array(c->support, c->support_count, sizeof *c->support);
     to->probe = copy_array(c->probe, c->probe_count, sizeof *c->probe);
@@ -102,6 +124,7 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
         goto fail;
     }
     SN_TRY_GOTO(status, copy_loads_and_tools(c, to));
+    SN_TRY_GOTO(status, copy_cuts(c, mesh, to));
     to->has_shape = c->has_shape && mesh->node_count == c->mesh->node_count &&
                     mesh->cell_count == c->mesh->cell_count;
     to->mesh = mesh;

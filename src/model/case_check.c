@@ -342,6 +342,46 @@ static sn_status check_tools(const sn_case *c) {
     return SN_OK;
 }
 
+//---- cuts ----------------------------------------------------------------------------------------
+
+static sn_status check_cut_shape(const sn_case *c, const sn_cut_def *cut, int index) {
+    const double *low = cut->low, *high = cut->high;
+    if (!(cut->at >= 0 && cut->at <= c->until))
+        return sn_fail(SN_E_RANGE, "cut %d is at %g s: 0 s to the end of the run, %g s, expected",
+                       index + 1, cut->at, c->until);
+    if (cut->kind == SN_CUT_SPHERE &&
+        (!(cut->radius > 0) || !isfinite(cut->radius) || !finite3(cut->centre)))
+        return sn_fail(SN_E_RANGE,
+                       "cut %d: radius %g m must be positive, and the centre of the sphere finite",
+                       index + 1, cut->radius);
+    if (cut->kind == SN_CUT_BOX && (!finite3(low) || !finite3(high) || !(low[0] < high[0]) ||
+                                    !(low[1] < high[1]) || !(low[2] < high[2])))
+        return sn_fail(SN_E_RANGE,
+                       "cut %d: the box from (%g, %g, %g) m to (%g, %g, %g) m must rise in every "
+                       "direction",
+                       index + 1, low[0], low[1], low[2], high[0], high[1], high[2]);
+    for (int k = 0; cut->kind == SN_CUT_CELLS && k < cut->cell_count; k++)
+        if (cut->cell[k] < 0 || cut->cell[k] >= c->mesh->cell_count)
+            return sn_fail(SN_E_RANGE, "cut %d: no cell %d: the mesh has cells 0 to %d", index + 1,
+                           cut->cell[k], c->mesh->cell_count - 1);
+    return SN_OK;
+}
+
+static sn_status check_cuts(const sn_case *c) {
+    for (int i = 0; i < c->cut_count; i++) {
+        int *cells = NULL, count;
+        SN_TRY(check_cut_shape(c, &c->cut[i], i));
+        SN_TRY(sn_case_cut_cells(c, i, &cells, &count));
+        sn_free(cells);
+        if (count == 0)
+            return sn_fail(SN_E_DEFINITION,
+                           "cut %d hits no cell: it takes cells whose centre at rest is inside; "
+                           "make it larger, or look where the body is",
+                           i + 1);
+    }
+    return SN_OK;
+}
+
 //---- settings ------------------------------------------------------------------------------------
 
 static sn_status check_positive(const char *what, const char *unit, double value) {
@@ -380,5 +420,6 @@ sn_status sn_case_check(const sn_case *c) {
     SN_TRY(check_contradictions(c));
     SN_TRY(check_names(c));
     SN_TRY(check_probes(c));
-    return check_tools(c);
+    SN_TRY(check_tools(c));
+    return check_cuts(c);
 }

@@ -141,15 +141,17 @@ static sn_status build_tools(const sn_case *c, sn_net *net, double *area) {
     if (boundary < 0) return SN_E_NAME;
     memset(area, 0, (size_t)net->nodes * sizeof *area);
     lump_area(c->mesh, boundary, area);
-    for (int i = 0; i < net->nodes; i++) net->contact_count += area[i] > 0;
+    for (int i = 0; i < net->nodes; i++) net->skin_count += area[i] > 0;
+    net->contact_count = net->cuttable ? net->nodes : net->skin_count;
     net->contact_node = sn_alloc((size_t)net->contact_count, sizeof *net->contact_node);
     net->contact_stiffness = sn_alloc((size_t)net->contact_count, sizeof(double));
     if (!net->contact_node || !net->contact_stiffness) return SN_E_MEMORY;
     double penalty = sn_case_penalty(c);
-    for (int i = 0, k = 0; i < net->nodes; i++) {
-        if (!(area[i] > 0)) continue;
-        net->contact_node[k] = i;
-        net->contact_stiffness[k++] = penalty * area[i];
+    for (int i = 0, k = 0, inner = net->skin_count; i < net->nodes; i++) {
+        if (!(area[i] > 0) && !net->cuttable) continue;
+        const int place = area[i] > 0 ? k++ : inner++;
+        net->contact_node[place] = i;
+        net->contact_stiffness[place] = penalty * area[i];
     }
     return SN_OK;
 }
@@ -163,12 +165,17 @@ static sn_status list_loaded(sn_net *net) {
         int n = load->kind == SN_LOAD_PRESSURE ? 3 * load->count : load->count;
         for (int k = 0; k < n; k++) on[load->node[k]] = 1;
     }
-    for (int k = 0; k < net->contact_count; k++) on[net->contact_node[k]] = 1;
+    for (int k = 0; k < net->skin_count; k++) on[net->contact_node[k]] = 1;
     for (int i = 0; i < net->nodes; i++) net->loaded_count += on[i];
-    net->loaded = sn_alloc((size_t)net->loaded_count, sizeof *net->loaded);
+    net->loaded_all = net->contact_count > net->skin_count ? net->nodes : net->loaded_count;
+    net->loaded = sn_alloc((size_t)net->loaded_all, sizeof *net->loaded);
     if (net->loaded)
-        for (int i = 0, k = 0; i < net->nodes; i++)
-            if (on[i]) net->loaded[k++] = i;
+        for (int i = 0, k = 0, inner = net->loaded_count; i < net->nodes; i++) {
+            if (on[i])
+                net->loaded[k++] = i;
+            else if (inner < net->loaded_all)
+                net->loaded[inner++] = i;
+        }
     sn_free(on);
     return net->loaded ? SN_OK : SN_E_MEMORY;
 }
@@ -240,7 +247,7 @@ double sn_net_next_corner(const sn_net *net, double t) {
     for (int k = 0; k < net->tool_count; k++)
         for (int e = 0; e < 2; e++)
             if (net->tool[k].grasp[e] > t) next = fmin(next, net->tool[k].grasp[e]);
-    return next;
+    return fmin(next, sn_cutting_next(net, t));
 }
 
 static bool factor_changes(const sn_history *factor, double from, double to) {
@@ -272,8 +279,8 @@ static void position(const sn_net *net, sn_precision precision, const void *u, i
                sn_real_at(precision, u, 4 * (size_t)node + (size_t)d);
 }
 
-void sn_net_clear_ext(const sn_net *net, double *ext) {
-    for (int k = 0; k < net->loaded_count; k++)
+void sn_net_clear_ext(const sn_net *net, const sn_parts *parts, double *ext) {
+    for (int k = 0; k < sn_net_loaded(net, parts); k++)
         memset(ext + 3 * net->loaded[k], 0, 3 * sizeof *ext);
 }
 
@@ -290,41 +297,45 @@ static void push_face(double x[3][3], double pressure, double force[3]) {
     }
 }
 
-void sn_net_add_load(const sn_net *net, int load, double factor, sn_precision precision,
-                     const void *u, double *ext) {
+void sn_net_add_load(const sn_net *net, int load, double factor, const sn_load_call *call,
+                     double *ext) {
     const sn_net_load *l = &net->load[load];
     if (l->kind != SN_LOAD_PRESSURE) {
+        const double *part = call->parts ? call->parts->load_force[load] : l->force;
         for (int k = 0; k < l->count; k++)
-            for (int d = 0; d < 3; d++) ext[3 * l->node[k] + d] += factor * l->force[3 * k + d];
+            for (int d = 0; d < 3; d++) ext[3 * l->node[k] + d] += factor * part[3 * k + d];
         return;
     }
     for (int f = 0; f < l->count; f++) {
         const int *node = l->node + 3 * f;
         double x[3][3], force[3];
-        for (int k = 0; k < 3; k++) position(net, precision, u, node[k], x[k]);
+        if (call->parts && call->parts->load_gone[load][f]) continue;
+        for (int k = 0; k < 3; k++) position(net, call->precision, call->u, node[k], x[k]);
         push_face(x, factor * l->pressure, force);
         for (int k = 0; k < 3; k++)
             for (int d = 0; d < 3; d++) ext[3 * node[k] + d] += force[d];
     }
 }
 
-void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext) {
+void sn_net_loads(const sn_net *net, double t, const sn_load_call *call, double *ext) {
     for (int l = 0; l < net->load_count; l++) {
         double factor;
         sn_history_at(net->load[l].factor, t, &factor);
-        sn_net_add_load(net, l, factor, precision, u, ext);
+        sn_net_add_load(net, l, factor, call, ext);
     }
 }
 
 double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
     const double margin = net->edge;
+    const double *stiffness = call->parts ? call->parts->contact_stiffness : net->contact_stiffness;
+    const int count = call->parts ? net->contact_count : net->skin_count;
     double omega2 = 0.0;
     for (int t = 0; t < net->tool_count; t++) {
         const sn_pose *pose = &call->pose[t];
         const double near = sn_tool_reach(&net->tool[t]) + margin;
         double *sum = call->tool_force[t], torque[3] = {0}, stiffest = 0.0;
         sum[0] = sum[1] = sum[2] = 0.0;
-        for (int k = 0; k < net->contact_count; k++) {
+        for (int k = 0; k < count; k++) {
             const int node = net->contact_node[k];
             const size_t at = (size_t)t * (size_t)net->contact_count + (size_t)k;
             double x[3], force[3], tangent[9], r[3], r2 = 0.0;
@@ -333,15 +344,16 @@ double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
                 r[d] = x[d] - pose->centre[d];
                 r2 += r[d] * r[d];
             }
-            if (r2 >= near * near || (call->grip && call->grip[node].tool >= 0)) {
+            if (r2 >= near * near || !(stiffness[k] > 0) ||
+                (call->grip && call->grip[node].tool >= 0)) {
                 call->after[at] = (sn_contact){0};
                 continue;
             }
-            const bool touches = sn_tool_contact(&net->tool[t], pose, x, net->contact_stiffness[k],
-                                                 &call->before[at], &call->after[at], force,
-                                                 call->tangent ? tangent : NULL);
+            const bool touches =
+                sn_tool_contact(&net->tool[t], pose, x, stiffness[k], &call->before[at],
+                                &call->after[at], force, call->tangent ? tangent : NULL);
             if (touches || sn_tool_depth(&net->tool[t], pose, x, NULL) > -margin)
-                stiffest = fmax(stiffest, net->contact_stiffness[k] / net->mass[node]);
+                stiffest = fmax(stiffest, stiffness[k] / net->mass[node]);
             if (!touches) continue;
             for (int d = 0; d < 3; d++) {
                 call->ext[3 * node + d] += force[d];

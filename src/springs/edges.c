@@ -154,7 +154,7 @@ fail:
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net) {
     constants k = {0};
     if (c->has_shape && sn_lattice_constants(&c->shape, k.axis, k.face, &k.body)) {
-        k.classes = true;
+        k.classes = net->by_turn = true;
         for (int d = 0; d < 3; d++) k.h[d] = c->shape.size[d] / c->shape.cells[d];
     }
     for (int r = 0; r < net->region_count; r++) SN_TRY(region_springs(c->mesh, net, r, &k));

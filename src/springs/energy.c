@@ -53,7 +53,7 @@ static double potential(double B, double lambda) {
 static double of_springs(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
     const branches b = {m, &region->memory, region->spring_store, SN_BLOCK,
                         (size_t)region->branches};
-    const double *stiffness = net->data[SN_DOUBLE].stiffness;
+    const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
     const double *inverse = net->data[SN_DOUBLE].inverse, B = region->exponent;
     double sum = 0;
     for (size_t n = 0; n < (size_t)region->spring_blocks * SN_BLOCK; n++) {
@@ -77,9 +77,10 @@ static double of_springs(const sn_net *net, const sn_net_region *region, const s
 static double of_points(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
     const branches b = {m, &region->memory, region->point_store, SN_BLOCK,
                         (size_t)region->branches};
+    const double *volume = sn_parts_point_volume(net, m->parts);
     double sum = 0;
     for (size_t n = 0; region->bulk > 0 && n < (size_t)region->point_blocks * SN_BLOCK; n++) {
-        const double V = net->point_volume[(size_t)region->point_block * SN_BLOCK + n];
+        const double V = volume[(size_t)region->point_block * SN_BLOCK + n];
         for (int k = 0; k < b.memory->terms; k++) {
             double H = stored(&b, n / SN_BLOCK, (size_t)k + 1, n % SN_BLOCK);
             sum += V * H * H / (2.0 * b.memory->g[k] * region->bulk);

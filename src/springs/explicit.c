@@ -55,7 +55,8 @@ static sn_moment moment_of(const sn_net *net, const sn_state *s) {
                        .a_fixed = s->a_fixed,
                        .tool_force = s->tool_force,
                        .kinetic = s->broken ? 0.0 : kinetic(net, s),
-                       .damped = s->damped_energy};
+                       .damped = s->damped_energy,
+                       .parts = sn_state_parts(s)};
 }
 
 // way of number `at` in the last step
@@ -79,7 +80,7 @@ static void count_work(sn_run *run, const sn_state *s, ledger *l) {
             ext += way * net->mass[i] * net->gravity[d];
             if (net->fixed_bits[i] >> d & 1 || s->grip[i].tool >= 0) on_fixed += work;
         }
-    for (int k = 0; k < net->loaded_count; k++)
+    for (int k = 0; k < sn_net_loaded(net, sn_state_parts(s)); k++)
         for (int d = 0; d < 3; d++) {
             int at = 3 * net->loaded[k] + d;
             double way = way_of(s, 4 * (size_t)net->loaded[k] + (size_t)d);
@@ -136,6 +137,20 @@ static void go_on(sn_run *run, sn_state *s, ledger *l, double next) {
     s->time = next; // rounding of sums
 }
 
+// cuts of the case that are due
+static sn_status cut(sn_run *run, sn_state *s, ledger *l) {
+    const int *cells;
+    int count;
+    while (sn_state_due_cut(run->net, s, &count, &cells)) {
+        const sn_moment before = moment_of(run->net, s);
+        SN_TRY(sn_run_cut(run, s, &before, count, cells));
+        const sn_moment after = moment_of(run->net, s);
+        run->released -= sn_run_store(run, &after);
+        memcpy(l->ext, s->ext, (size_t)run->net->nodes * 3 * sizeof *l->ext);
+    }
+    return SN_OK;
+}
+
 static sn_status start(sn_run *run, sn_state *s, ledger *l) {
     memcpy(l->ext, s->ext, (size_t)run->net->nodes * 3 * sizeof *l->ext);
     const sn_moment moment = moment_of(run->net, s);
@@ -174,6 +189,8 @@ sn_status sn_run_motion(sn_run *run) {
         double due = sn_run_output_time(net, output);
         double next = fmin(fmin(due, sn_net_next_corner(net, s->time)), net->until);
         sn_state_follow_grasps(net, s);
+        status = cut(run, s, &l);
+        if (status != SN_OK) break;
         l.fixed = fixed_kinetic(net, s);
         go_on(run, s, &l, next);
         if (s->broken || next < due) continue;

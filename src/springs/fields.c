@@ -20,7 +20,8 @@ struct sn_fields {
     double *strain, *stress, *energy;           ///< cells of the mesh
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
-    double *edge; ///< strain, stress, energy of smoothed edges: 13 each
+    double *edge;    ///< strain, stress, energy of smoothed edges: 13 each
+    double *removed; ///< NULL: nothing can be removed; 1 of cells that were
 };
 
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
@@ -37,8 +38,9 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
     f->energy = sn_alloc(cells, sizeof(double));
     f->growth = sn_alloc((size_t)net->point_blocks * SN_BLOCK, sizeof(double));
     f->edge = sn_alloc((size_t)net->edge_blocks * SN_BLOCK * EDGE_NUMBERS, sizeof(double));
-    if (!f->edge || !f->displacement || !f->velocity || !f->pressure || !f->around || !f->strain ||
-        !f->stress || !f->energy || !f->growth) {
+    if (net->cuttable) f->removed = sn_alloc(cells, sizeof(double));
+    if ((net->cuttable && !f->removed) || !f->edge || !f->displacement || !f->velocity ||
+        !f->pressure || !f->around || !f->strain || !f->stress || !f->energy || !f->growth) {
         sn_fields_destroy(f);
         return SN_E_MEMORY;
     }
@@ -49,7 +51,7 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
 void sn_fields_destroy(sn_fields *f) {
     if (!f) return;
     void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain,
-                   f->stress,       f->energy,   f->growth,   f->edge};
+                   f->stress,       f->energy,   f->growth,   f->edge,   f->removed};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(f);
 }
@@ -71,7 +73,7 @@ static void find_shape(const sn_net *net, const sn_moment *m, int slot, cell_sha
     const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
     const double *gradient = net->data[SN_DOUBLE].gradient;
     const int *corner = net->cell_node + block * 4 * SN_BLOCK + lane;
-    c->V = ((const double *)net->data[SN_DOUBLE].volume)[slot];
+    c->V = ((const double *)sn_parts_volume(net, m->parts, SN_DOUBLE))[slot];
     for (size_t i = 0; i < 3; i++)
         for (size_t j = 0; j < 3; j++) {
             double sum = net->axes[3 * j + i];
@@ -208,11 +210,13 @@ static void smoothed_cell(const sn_net *net, const sn_fields *f, int slot, doubl
 static void central_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
                          int slot, const cell_shape *c, double *stress, double *energy) {
     const sn_net_data *data = &net->data[SN_DOUBLE];
+    const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
+    const double *volume = sn_parts_spring_volume(net, m->parts);
     for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
         const int s = net->spring_share[q];
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
         const double inverse = ((const double *)data->inverse)[s], B = region->exponent;
-        const double part = ((const double *)data->stiffness)[s] / net->spring_volume[s];
+        const double part = stiffness[s] / volume[s];
         double x[3], l2 = 0, t, phi;
         for (size_t d = 0; d < 3; d++) {
             const int *end = net->spring_end + block * 2 * SN_BLOCK + lane;
@@ -255,7 +259,8 @@ static void nodal_volume(const sn_net *net, const sn_net_region *region, const s
 
 static void find_growth(const sn_net *net, sn_fields *f, const sn_moment *m) {
     const size_t points = (size_t)net->point_blocks * SN_BLOCK;
-    const double *volume = net->data[SN_DOUBLE].volume;
+    const double *volume = sn_parts_volume(net, m->parts, SN_DOUBLE);
+    const double *around = sn_parts_point_volume(net, m->parts);
     memset(f->growth, 0, points * sizeof *f->growth);
     for (int s = 0; net->volume && s < net->cell_blocks * SN_BLOCK; s++) {
         cell_shape c;
@@ -265,7 +270,7 @@ static void find_growth(const sn_net *net, sn_fields *f, const sn_moment *m) {
         for (int a = 0; a < 4; a++) f->growth[point[a * SN_BLOCK]] += 0.25 * c.V * (c.J - 1.0);
     }
     for (size_t p = 0; p < points; p++)
-        if (net->point_volume[p] > 0) f->growth[p] /= net->point_volume[p];
+        if (around[p] > 0) f->growth[p] /= around[p];
 }
 
 static const sn_net_region *region_of(const sn_net *net, int slot) {
@@ -295,11 +300,16 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
         const sn_net_region *region = region_of(net, slot);
         double E[6], *stress = f->stress + 6 * e;
         cell_shape c;
+        memset(stress, 0, 6 * sizeof *stress);
+        f->energy[e] = 0;
+        if (f->removed) f->removed[e] = m->parts && m->parts->gone[slot];
+        if (m->parts && m->parts->gone[slot]) {
+            memset(f->strain + 6 * e, 0, 6 * sizeof *f->strain);
+            continue;
+        }
         find_shape(net, m, slot, &c);
         green_strain(c.F, E);
         turn_back(net, E, f->strain + 6 * e);
-        memset(stress, 0, 6 * sizeof *stress);
-        f->energy[e] = 0;
         if (net->rung == SN_RUNG_COUPLED)
             solid_place(net, region, m, slot, &c, stress, &f->energy[e]);
         else if (net->rung == SN_RUNG_SMOOTHED)
@@ -314,7 +324,8 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
             f->around[node] += c.V;
         }
     }
-    for (int i = 0; i < net->nodes; i++) f->pressure[i] /= f->around[i];
+    for (int i = 0; i < net->nodes; i++)
+        if (f->around[i] > 0) f->pressure[i] /= f->around[i]; // else a node without cells
 }
 
 sn_status sn_fields_emit(const sn_fields *f, double time, const sn_output *output) {
@@ -323,8 +334,9 @@ sn_status sn_fields_emit(const sn_fields *f, double time, const sn_output *outpu
                             {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
                             {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
                             {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
-                            {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy}};
-    const sn_frame frame = {time, (int)(sizeof all / sizeof *all), all};
+                            {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy},
+                            {"removed", "1", SN_ON_CELLS, 1, f->removed}};
+    const sn_frame frame = {time, (int)(sizeof all / sizeof *all) - !f->removed, all};
     return output->frame(output->context, &frame);
 }
 

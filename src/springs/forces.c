@@ -33,7 +33,7 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
                       const sn_factors *factors, sn_cell_pass *pass) {
     const sn_net_data *data = &net->data[call->precision];
     pass->gradient = data->gradient;
-    pass->volume = data->volume;
+    pass->volume = sn_parts_volume(net, call->parts, call->precision);
     pass->u = call->u;
     memcpy(pass->axes, net->axes, sizeof pass->axes);
     pass->rotated = net->rotated;
@@ -56,7 +56,7 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
 
 static void set_springs(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
                         const sn_factors *factors, sn_spring_pass *pass) {
-    pass->stiffness = net->data[call->precision].stiffness;
+    pass->stiffness = sn_parts_stiffness(net, call->parts, call->precision);
     pass->exponent = region->exponent;
     pass->u = call->u;
     pass->first = region->spring_block;
@@ -68,7 +68,7 @@ static void set_points(const sn_net *net, const sn_net_region *region, const sn_
     pass->start = net->point_start;
     pass->item = net->point_item;
     pass->growth = call->out->growth;
-    pass->stiffness = net->data[call->precision].point_stiffness;
+    pass->stiffness = sn_parts_point_stiffness(net, call->parts, call->precision);
     pass->pressure = call->out->pressure;
     pass->first = region->point_block;
     set_memory(region, call, region->point_store, factors, &pass->memory);
@@ -84,17 +84,28 @@ typedef struct force_work {
     sn_node_pass nodes;
 } force_work;
 
+// corners of the items of tiles, of what cuts have left
+static const uint16_t *corners_of(const force_work *w, const sn_tiles *t) {
+    const sn_parts *parts = w->call->parts;
+    if (parts && t == &w->net->cell_tiles) return parts->cell_corner;
+    if (parts && t == &w->net->spring_tiles) return parts->spring_corner;
+    return t->corner;
+}
+
 // part: first entry of these tiles among all forces
 static sn_tile tile_of(const force_work *w, const sn_tiles *t, int k, int part) {
     const sn_precision p = w->call->precision;
     const size_t entry = (size_t)t->start[k];
     const sn_tile_place *place = &t->place[k];
+    const sn_parts *parts = w->call->parts;
+    const bool fans = parts && t == &w->net->fan_tiles;
     return (sn_tile){.block = place->block,
                      .blocks = place->blocks,
                      .nodes = t->start[k + 1] - t->start[k],
                      .node = t->node + entry,
                      .point = t->point ? t->point + entry : NULL,
-                     .corner = t->corner + place->corner,
+                     .corner = corners_of(w, t) + place->corner,
+                     .present = fans ? at(parts->present[p], p, place->corner) : NULL,
                      .ring = place->ring,
                      .closed = place->closed,
                      .position = at(t->position[p], p, 4 * entry),
@@ -120,6 +131,10 @@ static void spring_task(void *context, int k) {
     const force_work *w = context;
     const sn_tiles *t = &w->net->spring_tiles;
     const sn_tile tile = tile_of(w, t, k, 0);
+    if (w->call->parts && w->call->parts->spring_empty[k]) {
+        memset(tile.force, 0, (size_t)tile.nodes * 4 * real_size(w->call->precision));
+        return;
+    }
     w->kernels->springs(&w->call->out->springs[t->place[k].region], &tile);
 }
 

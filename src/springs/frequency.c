@@ -22,6 +22,7 @@ static void evaluate(const sn_net *net, const sn_frequency_call *call, const voi
     sn_force_call force = {.precision = call->precision,
                            .mode = SN_MEMORY_OFF,
                            .u = u,
+                           .parts = call->parts,
                            .upright = call->upright,
                            .out = call->scratch,
                            .team = call->team};

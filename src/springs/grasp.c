@@ -18,7 +18,8 @@ static double place_of(const sn_net *net, const sn_state *s, int node, int d) {
 
 static void hold(const sn_net *net, sn_state *s, int tool, const sn_pose *pose, int node) {
     sn_grip *grip = &s->grip[node];
-    if (net->fixed_bits[node] == 7) return; // nothing left to hold
+    const sn_parts *parts = sn_state_parts(s);
+    if (net->fixed_bits[node] == 7 || (parts && parts->loose[node])) return; // nothing to hold
     if (grip->tool < 0) s->gripped[s->gripped_count++] = node;
     *grip = (sn_grip){.tool = tool};
     double r[3];

@@ -13,8 +13,8 @@
 // part. The viscous part wants the rate at the end of the step, (g dT - l w^-1 dT before) / h. What
 // the store keeps of it is dT / h, so that it is a branch with gain g/h and decay -w/(1 + w).
 //
-// Damping by mass acts on the velocity relative to the rigid motion of the body: with R the six
-// rigid motions, orthonormal in M, its matrix is M - sum (M R)(M R)^T, which the tangent has too.
+// Damping by mass acts on the velocity relative to the rigid motion of the body (springs/drag.c);
+// the tangent has its matrix too.
 //
 // Newton starts from u0 + h v0 + h^2/2 a0. The tangent of the last correction serves, across steps
 // of one length too, until a correction leaves more than a fifth of the residual. Corrections are
@@ -25,7 +25,7 @@
 
 #include "springs/net.h"
 
-enum { NEWTON_MOST = 25, HALVINGS = 8, RIGID = 6, FEW_CORNERS = 8 };
+enum { NEWTON_MOST = 25, HALVINGS = 8, FEW_CORNERS = 8 };
 static const double tolerance = 1e-8; // residual over the forces at work
 static const double settled = 1e-6;   // the same where rounding allows no less
 static const double forcing = 1e-2;   // of the linear solves, over the residual
@@ -47,11 +47,10 @@ struct sn_implicit {
     double *before;       ///< quads: at the start of a correction
     double *b, *x;        ///< residual, correction                  (nodes x 3)
     double *drag, *drag0; ///< forces of damping by mass now, at the start (nodes x 3)
-    double *rigid;        ///< M R                                   (RIGID x nodes x 3)
-    int rigid_count;
-    sn_contact *touch; ///< trial contact
-    double g, l, h;    ///< of the step that is tried
-    double longest;    ///< that a step may be after one was cut
+    double *rigid;        ///< M R                                (SN_RIGID x nodes x 3)
+    sn_contact *touch;    ///< trial contact
+    double g, l, h;       ///< of the step that is tried
+    double longest;       ///< that a step may be after one was cut
     double scale, least, residual, smallest;
     int corrections, cuts;
     char reason[SN_TEXT_MAX];
@@ -102,7 +101,7 @@ sn_status sn_implicit_create(const sn_net *net, sn_implicit **implicit) {
     }
     im->history = sn_alloc(net->store_size, sizeof(double));
     im->trial = sn_alloc((size_t)net->region_count, sizeof *im->trial);
-    im->rigid = sn_alloc(net->damping > 0 ? RIGID * 3 * n : 0, sizeof(double));
+    im->rigid = sn_alloc(net->damping > 0 ? SN_RIGID * 3 * n : 0, sizeof(double));
     im->touch = sn_alloc((size_t)net->tool_count * (size_t)net->contact_count, sizeof *im->touch);
     if (!all || !im->history || !im->trial || !im->rigid || !im->touch) return SN_E_MEMORY;
     // rounding of the forces of a cell, 1e-16 of its stiffness times edge, must stay below this
@@ -130,6 +129,10 @@ const char *sn_implicit_reason(const sn_implicit *im) {
 
 void sn_implicit_forget(sn_implicit *im) {
     im->fresh = false;
+}
+
+void sn_implicit_restart(sn_implicit *im) {
+    im->fresh = im->has_older = false;
 }
 
 int sn_implicit_pieces(const sn_net *net, sn_implicit *im, sn_piece *piece) {
@@ -181,65 +184,14 @@ static void move_along(const sn_net *net, sn_state *s, sn_implicit *im) {
         }
 }
 
-// M R at the present place: translations, then rotations about the centre, by Gram and Schmidt
-static void find_rigid(const sn_net *net, const double *u, sn_implicit *im) {
-    const size_t n = (size_t)net->nodes * 3;
-    double mass = 0, centre[3] = {0};
-    for (int i = 0; i < net->nodes; i++) {
-        mass += net->mass[i];
-        for (int d = 0; d < 3; d++)
-            centre[d] += net->mass[i] * (net->node_position[3 * i + d] + u[4 * i + d]);
-    }
-    im->rigid_count = 0;
-    for (int k = 0; k < RIGID; k++) {
-        double *b = im->rigid + (size_t)im->rigid_count * n, whole = 0, left = 0;
-        for (int i = 0; i < net->nodes; i++)
-            for (int d = 0; d < 3; d++) {
-                int e = (k + 1) % 3, f = (k + 2) % 3; // rotation k - 3 moves e by -r_f, f by r_e
-                int along = d == e ? f : e;
-                double r =
-                    net->node_position[3 * i + along] + u[4 * i + along] - centre[along] / mass;
-                double way = k < 3 ? (double)(d == k) : d == k - 3 ? 0.0 : d == e ? -r : r;
-                b[3 * i + d] = net->mass[i] * way;
-                whole += net->mass[i] * way * way;
-            }
-        for (int j = 0; j < im->rigid_count; j++) { // R_j . M R_k = (M R_j) M^-1 (M R_k)
-            const double *c = im->rigid + (size_t)j * n;
-            double part = 0;
-            for (size_t q = 0; q < n; q++) part += c[q] * b[q] / net->mass[q / 3];
-            for (size_t q = 0; q < n; q++) b[q] -= part * c[q];
-        }
-        for (size_t q = 0; q < n; q++) left += b[q] * b[q] / net->mass[q / 3];
-        if (!(left > 1e-12 * whole)) continue; // all mass on an axis
-        for (size_t q = 0; q < n; q++) b[q] /= sqrt(left);
-        im->rigid_count++;
-    }
-}
-
-// drag <- -damping (M - (M R)(M R)^T) v, in the free directions
-static void find_drag(const sn_net *net, const sn_state *s, sn_implicit *im) {
-    const size_t n = (size_t)net->nodes * 3;
-    const double *v = s->v;
-    if (!(net->damping > 0)) return;
-    find_rigid(net, s->u, im);
-    for (size_t q = 0; q < n; q++) im->drag[q] = net->mass[q / 3] * v[4 * (q / 3) + q % 3];
-    for (int k = 0; k < im->rigid_count; k++) {
-        const double *b = im->rigid + (size_t)k * n;
-        double part = 0;
-        for (size_t q = 0; q < n; q++) part += b[q] * v[4 * (q / 3) + q % 3];
-        for (size_t q = 0; q < n; q++) im->drag[q] -= part * b[q];
-    }
-    for (size_t q = 0; q < n; q++)
-        im->drag[q] *= is_fixed(net, (int)(q / 3), (int)(q % 3)) ? 0.0 : -net->damping;
-}
-
 // loads and contact at s->u and s->time + h, into s->ext; blocks of contact into a tangent
 static void find_ext(const sn_net *net, sn_state *s, sn_implicit *im, sn_tangent *tangent) {
     const double time = s->time + im->h;
-    sn_net_clear_ext(net, s->ext);
+    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s)};
+    sn_net_clear_ext(net, load.parts, s->ext);
     for (int l = 0; l < net->load_count; l++)
-        sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, time), SN_DOUBLE,
-                        s->u, s->ext);
+        sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, time), &load,
+                        s->ext);
     for (int t = 0; t < net->tool_count; t++) sn_net_tool_pose(net, s, t, time, &s->tool_pose[t]);
     const sn_contact_call call = {.precision = SN_DOUBLE,
                                   .u = s->u,
@@ -249,6 +201,7 @@ static void find_ext(const sn_net *net, sn_state *s, sn_implicit *im, sn_tangent
                                   .ext = s->ext,
                                   .tool_force = s->tool_force,
                                   .tool_torque = s->tool_torque,
+                                  .parts = load.parts,
                                   .tangent = tangent ? sn_tangent_add_contact : NULL,
                                   .context = tangent};
     sn_net_contact(net, &call);
@@ -261,14 +214,15 @@ static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im) {
                                 .u = s->u,
                                 .factors = im->trial,
                                 .history = im->history,
+                                .parts = sn_state_parts(s),
                                 .out = &s->now,
                                 .team = s->team};
     double *f = s->now.f, sum[4] = {0};
     move_along(net, s, im);
     sn_net_forces(net, &call);
-    if (net->loaded_count > 0) find_ext(net, s, im, NULL);
+    if (sn_net_loaded(net, call.parts) > 0) find_ext(net, s, im, NULL);
     sn_state_add_pushes(s);
-    find_drag(net, s, im);
+    if (net->damping > 0) sn_implicit_drag(net, s, im->rigid, im->drag);
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
             const int k = 3 * i + d;
@@ -291,7 +245,7 @@ static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im) {
 // a place that the laws can bear: springs may turn inside out, cells may not
 static bool try_place(const sn_net *net, sn_state *s, sn_implicit *im) {
     if (net->rung != SN_RUNG_CENTRAL) {
-        im->smallest = sn_net_smallest_ratio(net, s->u);
+        im->smallest = sn_net_smallest_ratio(net, sn_state_parts(s), s->u);
         if (!(im->smallest > 0)) return false;
     }
     find_residual(net, s, im);
@@ -302,13 +256,18 @@ static bool try_place(const sn_net *net, sn_state *s, sn_implicit *im) {
 
 static void assemble(const sn_net *net, sn_state *s, sn_implicit *im) {
     const double c = im->g / im->h;
-    const sn_tangent_call call = {
-        .u = s->u, .factors = im->trial, .history = im->history, .pressure = s->now.pressure};
+    const sn_tangent_call call = {.u = s->u,
+                                  .factors = im->trial,
+                                  .history = im->history,
+                                  .pressure = s->now.pressure,
+                                  .parts = sn_state_parts(s)};
     sn_tangent_assemble(net, im->tangent, &call);
     if (net->tool_count > 0) find_ext(net, s, im, im->tangent);
     sn_tangent_add_mass(net, im->tangent, c * (c + net->damping));
-    sn_tangent_lower(im->tangent, net->damping > 0 ? im->rigid_count : 0, im->rigid,
-                     c * net->damping);
+    int pieces = 1;
+    const int *piece = sn_state_pieces(s, &pieces);
+    sn_tangent_lower(im->tangent, net->damping > 0 ? SN_RIGID : 0, im->rigid, c * net->damping);
+    sn_tangent_lower_pieces(im->tangent, piece, pieces);
     sn_tangent_prepare(net, im->tangent);
     im->fresh = true;
     im->tangent_step = im->h;
@@ -446,6 +405,7 @@ static void advance_memory(const sn_net *net, sn_state *s) {
                                 .u = s->u,
                                 .factors = s->factors,
                                 .store = s->store,
+                                .parts = sn_state_parts(s),
                                 .out = &s->probe,
                                 .team = s->team};
     sn_net_forces(net, &call);

@@ -303,6 +303,7 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->output_every = c->output_every;
     net->scheme = def->scheme;
     net->asked_step = def->step;
+    net->cuttable = def->cuttable || c->cut_count > 0;
     memcpy(net->gravity, c->gravity, sizeof net->gravity);
     net->threads = sn_team_limit(def->threads);
     if (net->threads < def->threads)
@@ -336,6 +337,7 @@ static sn_status build(const sn_case *c, sn_net *net) {
     SN_TRY(set_masses(c, net));
     SN_TRY(sn_net_build_drive(c, net));
     SN_TRY(set_inverse_masses(net));
+    if (net->cuttable) SN_TRY(sn_cutting_create(c, net));
     net->edge = mean_edge(net);
     // the step must be known before the memory, the viscous part before the step
     for (int r = 0; r < net->region_count; r++)
@@ -413,6 +415,7 @@ void sn_net_destroy(sn_net *n) {
     sn_tiles_destroy(&n->spring_tiles);
     sn_tiles_destroy(&n->fan_tiles);
     sn_net_destroy_edges(n);
+    sn_cutting_destroy(n->cutting);
     void *all[] = {n->node_name,     n->region,      n->cell_node,          n->cell_point,
                    n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
                    n->spring_volume, n->point_start, n->point_item,         n->point_node,

@@ -114,6 +114,23 @@ typedef struct sn_net_probe {
     int *fixed;
 } sn_net_probe;
 
+/// What cuts leave of a net: stands where NULL stands for the whole net. Arrays as those of a net.
+typedef struct sn_parts {
+    const void *volume[2], *stiffness[2], *point_stiffness[2]; ///< by sn_precision
+    const double *point_volume, *spring_volume;
+    const uint16_t *cell_corner;       ///< removed cells have all corners at one node
+    const uint16_t *spring_corner;     ///< springs that are gone stand where others stand
+    const unsigned char *spring_empty; ///< tiles of which no spring is left
+    const void *present[2];            ///< fans: see sn_tile, beside their `corner`
+    const bool *gone;                  ///< slots of removed cells        (cell_blocks x SN_BLOCK)
+    const bool *loose;                 ///< nodes that have lost all cells               (nodes)
+    const double *contact_stiffness;   ///< 0: not on the surface              (contact_count)
+    double *const *load_force;         ///< of a load: as its `force`, NULL of a pressure
+    bool *const *load_gone; ///< of a load: faces of removed cells; NULL but of a pressure
+} sn_parts;
+typedef struct sn_cutting sn_cutting; // springs/cut.h
+typedef struct sn_cut sn_cut;
+
 struct sn_net {
     int nodes, cells, springs;
     sn_rung rung;
@@ -174,12 +191,17 @@ struct sn_net {
     int tool_count;
     sn_tool *tool; ///< paths owned
     int contact_count;
+    int skin_count; ///< of these on the surface at rest: the first; others may get there by cuts
     int *contact_node;
-    double *contact_stiffness; ///< N/m
-    int loaded_count;
-    int *loaded; ///< nodes that loads and tools can push
+    double *contact_stiffness; ///< N/m; 0 behind `skin_count`
+    int loaded_count;          ///< but for nodes that are not on the surface yet
+    int loaded_all;
+    int *loaded; ///< nodes that loads and tools can push               (loaded_all)
     int probe_count;
     sn_net_probe *probe;
+    bool by_turn;         ///< springs have class constants: shares of cells by their angle
+    bool cuttable;        ///< its states may be cut
+    sn_cutting *cutting;  ///< Nullable: what cuts need to know; of a net that is cuttable
     uint64_t fingerprint; ///< of all that results depend on
 };
 
@@ -252,6 +274,7 @@ struct sn_state {
     bool crushed; ///< volume points were, and some cells may still be
     double damped_energy;  ///< taken by damping by mass so far, J
     sn_implicit *implicit; ///< Nullable: what the implicit integrator works with
+    sn_cut *cut;           ///< Nullable: what was removed; of a net that is cuttable
 };
 
 //---- building ------------------------------------------------------------------------------------
@@ -323,6 +346,7 @@ typedef struct sn_force_call {
     const sn_factors *factors; ///< Nullable with SN_MEMORY_OFF
     void *store;               ///< ADVANCE
     const void *history;       ///< TRIAL
+    const sn_parts *parts;     ///< Nullable
     bool upright;              ///< some cells are crushed (SN_UPRIGHT)
     sn_scratch *out;
     sn_team *team; ///< Nullable: alone
@@ -343,13 +367,23 @@ double sn_net_prescribed(const sn_net *net, const sn_net_fixed *fixed, double t)
 double sn_net_next_corner(const sn_net *net, double t);
 /// Whether anything imposed changes between two times with no corner between them.
 bool sn_net_changes(const sn_net *net, double from, double to);
-/// Adds loads to ext (nodes x 3; quads u in the given precision).
-void sn_net_loads(const sn_net *net, double t, sn_precision precision, const void *u, double *ext);
-/// The same of one load, with a factor of the caller's.
-void sn_net_add_load(const sn_net *net, int load, double factor, sn_precision precision,
-                     const void *u, double *ext);
+/// Nodes of `loaded` that may be pushed. parts: Nullable, here and below.
+static inline int sn_net_loaded(const sn_net *net, const sn_parts *parts) {
+    return parts ? net->loaded_all : net->loaded_count;
+}
+/// A place, to find the forces of loads at.
+typedef struct sn_load_call {
+    sn_precision precision;
+    const void *u; ///< quads
+    const sn_parts *parts;
+} sn_load_call;
+/// Adds a load to ext (nodes x 3).
+void sn_net_add_load(const sn_net *net, int load, double factor, const sn_load_call *call,
+                     double *ext);
+/// Adds all loads, with their own factors.
+void sn_net_loads(const sn_net *net, double t, const sn_load_call *call, double *ext);
 /// Clears ext at the loaded nodes.
-void sn_net_clear_ext(const sn_net *net, double *ext);
+void sn_net_clear_ext(const sn_net *net, const sn_parts *parts, double *ext);
 /// Contact with tools: forces into ext, sum by tool into tool_force; `after` may be `before`.
 /// tangent(context, node, 3x3) is called for touching nodes where not NULL.
 typedef void sn_tangent_sink(void *context, int node, const double tangent[9]);
@@ -363,6 +397,7 @@ typedef struct sn_contact_call {
     double (*tool_force)[3];
     double (*tool_torque)[3]; ///< Nullable: about the centre of the pose
     const sn_grip *grip;      ///< Nullable: nodes that tools hold do not touch them (nodes)
+    const sn_parts *parts;    ///< Nullable
     sn_tangent_sink *tangent;
     void *context;
 } sn_contact_call;
@@ -411,6 +446,7 @@ typedef struct sn_frequency_call {
     int steps;              ///< at most SN_LANCZOS_MAX
     sn_scratch *scratch;    ///< in that precision
     sn_team *team;          ///< Nullable: alone
+    const sn_parts *parts;  ///< Nullable
     bool upright;           ///< as in sn_force_call
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
@@ -434,6 +470,14 @@ void sn_implicit_destroy(sn_implicit *implicit); // NULL is allowed
 void sn_implicit_reset(const sn_net *net, sn_implicit *implicit);
 /// One step of at most dt; no allocation. Breaks the state where none, however short, succeeds.
 void sn_implicit_advance(const sn_net *net, sn_state *s, double dt);
+/// The next step starts from place and velocity alone: forces are others than those of the step
+/// before.
+void sn_implicit_restart(sn_implicit *implicit);
+#define SN_RIGID 6 ///< motions of a rigid body
+/// Forces of damping by mass at u and v of a state, and M R of its rigid motions.
+/// @param rigid  (SN_RIGID x nodes x 3)
+/// @param drag   (nodes x 3)
+void sn_implicit_drag(const sn_net *net, const sn_state *s, double *rigid, double *drag);
 /// Displacements at the start of the last step, quads.
 const double *sn_implicit_before(const sn_implicit *implicit);
 /// Why the last step was cut or failed, with numbers; empty where it was not.
@@ -443,7 +487,7 @@ void sn_implicit_counts(const sn_implicit *implicit, int *corrections, int *cuts
 /// Back to rest, but for what is prescribed at the state's time.
 void sn_state_rest(const sn_net *net, sn_state *s);
 /// Smallest volume ratio of any cell; NAN where one is not finite. u: quads.
-double sn_net_smallest_ratio(const sn_net *net, const double *u);
+double sn_net_smallest_ratio(const sn_net *net, const sn_parts *parts, const double *u);
 
 //---- what a run hands out ------------------------------------------------------------------------
 
@@ -469,6 +513,7 @@ typedef struct sn_moment {
     const double *a_fixed;   ///< Nullable: at rest
     double (*tool_force)[3]; ///< read only
     double kinetic, damped;  ///< J: of motion; taken by damping by mass so far
+    const sn_parts *parts;   ///< Nullable
 } sn_moment;
 typedef struct sn_fields sn_fields;
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields);
@@ -507,6 +552,7 @@ typedef struct sn_tangent_call {
     const sn_factors *factors; ///< Nullable: the instantaneous law
     const double *history;     ///< with factors
     const double *pressure;    ///< at volume points, as the force call left it
+    const sn_parts *parts;     ///< Nullable
 } sn_tangent_call;
 /// Assembles -d(internal force)/du.
 void sn_tangent_assemble(const sn_net *net, sn_tangent *tangent, const sn_tangent_call *call);
@@ -520,6 +566,9 @@ void sn_tangent_add_mass(const sn_net *net, sn_tangent *tangent, double factor);
 /// Takes factor sum b b^T off every product from now on; the vectors b stay the caller's.
 /// count 0: nothing.                                          (count x nodes x 3)
 void sn_tangent_lower(sn_tangent *tangent, int count, const double *vectors, double factor);
+/// The vectors of sn_tangent_lower() stand for as many of every piece of the body: sum by pieces.
+/// piece: Nullable, of nodes, -1 of those that belong to none; the caller's.
+void sn_tangent_lower_pieces(sn_tangent *tangent, const int *piece, int pieces);
 /// Inverts the diagonal blocks, with prescribed directions held: after all has been added.
 void sn_tangent_prepare(const sn_net *net, sn_tangent *tangent);
 /// y <- K x, all directions. x, y: (nodes x 3).
@@ -561,6 +610,7 @@ typedef struct sn_run {
     long wall_seen;
     double internal_work; ///< done on the tissue by its nodes so far, J
     double external_work; ///< J
+    double released;      ///< by cuts so far, J
     double stored_start, kinetic_start;
 } sn_run;
 void sn_run_wall(sn_run *run, double seconds);
@@ -586,3 +636,71 @@ double sn_run_store(sn_run *run, const sn_moment *moment);
 sn_status sn_run_energy_rows(sn_record *energy, int rows);
 sn_status sn_run_motion(sn_run *run);
 sn_status sn_run_quasi_static(sn_run *run);
+
+//---- cuts ----------------------------------------------------------------------------------------
+
+/// Arrays of what is left of a net, of a net where parts is NULL.
+static inline const void *sn_parts_volume(const sn_net *net, const sn_parts *parts,
+                                          sn_precision p) {
+    return parts ? parts->volume[p] : net->data[p].volume;
+}
+static inline const void *sn_parts_stiffness(const sn_net *net, const sn_parts *parts,
+                                             sn_precision p) {
+    return parts ? parts->stiffness[p] : net->data[p].stiffness;
+}
+static inline const void *sn_parts_point_stiffness(const sn_net *net, const sn_parts *parts,
+                                                   sn_precision p) {
+    return parts ? parts->point_stiffness[p] : net->data[p].point_stiffness;
+}
+static inline const double *sn_parts_point_volume(const sn_net *net, const sn_parts *parts) {
+    return parts ? parts->point_volume : net->point_volume;
+}
+static inline const double *sn_parts_spring_volume(const sn_net *net, const sn_parts *parts) {
+    return parts ? parts->spring_volume : net->spring_volume;
+}
+/// What is left of the net of a state; NULL before the first cut.
+const sn_parts *sn_state_parts(const sn_state *s);
+/// What cuts need to know of a net, for cuttable ones. c: of the mesh in the net's order.
+sn_status sn_cutting_create(const sn_case *c, sn_net *net);
+void sn_cutting_destroy(sn_cutting *cutting); // NULL is allowed
+/// Goes on with a hash by the cuts of the case.
+uint64_t sn_cutting_mix(uint64_t hash, const sn_net *net);
+/// Time of the first cut of the case after t; INFINITY without.
+double sn_cutting_next(const sn_net *net, double t);
+/// All that a state of a cuttable net can need for cuts.
+sn_status sn_cut_create(const sn_net *net, sn_cut **cut);
+void sn_cut_destroy(sn_cut *cut); // NULL is allowed
+/// Nothing is cut.
+void sn_cut_mend(const sn_net *net, sn_cut *cut);
+/// What is left, from what was removed: after bytes were read, or for a state of another net.
+void sn_cut_restore(const sn_net *net, sn_cut *cut);
+/// What of cuts a snapshot holds; returns how many pieces.
+int sn_cut_pieces(const sn_net *net, sn_cut *cut, sn_piece *piece);
+#define SN_CUT_PIECES 2
+/// The next cut of the case that is due at the state's time: its cells.
+/// @return false where none is.
+bool sn_state_due_cut(const sn_net *net, sn_state *s, int *count, const int **cells);
+/// Removes cells in a run. run->released gets what was stored before; the caller takes off what is
+/// stored afterwards. @return as sn_state_cut().
+sn_status sn_run_cut(sn_run *run, sn_state *s, const sn_moment *before, int count,
+                     const int *cells);
+/// Pieces that hang together by cells: the piece of each node, -1 of loose ones (nodes). NULL where
+/// nothing was cut.
+const int *sn_state_pieces(const sn_state *s, int *count);
+/// Whether what is left has a piece that no support or prescribed motion holds.
+bool sn_state_has_free_piece(const sn_state *s);
+/// Number of cells removed.
+int sn_state_removed(const sn_state *s);
+/// Adds half a kick by the present forces to v, but of nodes that tools hold.
+void sn_state_half_kick(const sn_net *net, sn_state *s, double half);
+/// All forces at the present place and time, explicit or implicit, with the memory as `factors`
+/// move it on.
+void sn_state_find_forces(const sn_net *net, sn_state *s);
+/// The highest frequency at the present place, by a search from the vector in s->mode.
+void sn_state_find_frequency(const sn_net *net, sn_state *s);
+/// Velocity and spin of a rigid motion, and sums that they are found from.
+typedef struct sn_rigid {
+    double mass, centre[3], linear[3], spin[3], inertia[9];
+} sn_rigid;
+/// Room for the rigid motions of the pieces of a state; NULL where nothing was cut.
+sn_rigid *sn_state_rigid(const sn_state *s);

@@ -79,6 +79,8 @@ typedef struct sn_tile {
                             ///<                                  (blocks x corners x SN_BLOCK)
     int ring;               ///< fans: nodes around the edge; corners are its ends, then these
     bool closed;            ///< fans: the last node of the ring meets the first
+    const void *present;    ///< fans, Nullable: 0 where the cell behind a node of the ring was
+                            ///< removed; beside `corner`
     const void *position;   ///< quads: at rest, from some origin  (nodes)
     void *force;            ///< out: quads                       (nodes)
     void *growth;           ///< out of the volume pass, m3       (nodes)

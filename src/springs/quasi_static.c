@@ -32,8 +32,10 @@ typedef struct solver {
     double *b, *x;          ///< (nodes x 3)
     double *last;           ///< free part of the last step's motion  (nodes x 3)
     double last_step;
-    double *ext;   ///< loads, tools and weight               (nodes x 3)
-    double *inner; ///< internal forces at the start of the step (nodes x 3)
+    double *ext;    ///< loads, tools and weight               (nodes x 3)
+    double *inner;  ///< internal forces at the start of the step (nodes x 3)
+    double *held;   ///< Nullable: after a cut, forces that hold the body where it was
+    double holding; ///< part of them that acts yet
     double *inner_now;
     sn_contact *touch;   ///< trial contact
     double time, level;  ///< that equilibrium is sought for; part of the loads
@@ -44,13 +46,14 @@ typedef struct solver {
 
 //---- residual ------------------------------------------------------------------------------------
 
-double sn_net_smallest_ratio(const sn_net *net, const double *u) {
+double sn_net_smallest_ratio(const sn_net *net, const sn_parts *parts, const double *u) {
     const double *gradient = net->data[SN_DOUBLE].gradient;
     double least = INFINITY;
     for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
         const int *corner = net->cell_node + block * 4 * SN_BLOCK + lane;
         double F[9];
+        if (parts && parts->gone[s]) continue;
         for (size_t i = 0; i < 3; i++)
             for (size_t j = 0; j < 3; j++) {
                 double sum = net->axes[3 * j + i];
@@ -71,7 +74,8 @@ static void external(solver *v, sn_tangent *tangent) {
     const sn_net *net = v->net;
     sn_state *s = v->s;
     memset(v->ext, 0, (size_t)net->nodes * 3 * sizeof *v->ext);
-    sn_net_loads(net, v->time, SN_DOUBLE, s->u, v->ext);
+    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s)};
+    sn_net_loads(net, v->time, &load, v->ext);
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++)
             v->ext[3 * i + d] = v->level * (v->ext[3 * i + d] + net->mass[i] * net->gravity[d]);
@@ -84,6 +88,7 @@ static void external(solver *v, sn_tangent *tangent) {
                                   .after = v->touch,
                                   .ext = v->ext,
                                   .tool_force = s->tool_force,
+                                  .parts = load.parts,
                                   .tangent = tangent ? sn_tangent_add_contact : NULL,
                                   .context = tangent};
     sn_net_contact(net, &call);
@@ -99,6 +104,7 @@ static double find_residual(solver *v, sn_memory_mode mode) {
                                 .factors = s->factors,
                                 .store = s->store,
                                 .history = v->history,
+                                .parts = sn_state_parts(s),
                                 .out = &s->now,
                                 .team = s->team};
     sn_net_forces(net, &call);
@@ -108,11 +114,14 @@ static double find_residual(solver *v, sn_memory_mode mode) {
         for (int d = 0; d < 3; d++) {
             double inner = f[4 * i + d] - net->mass[i] * net->gravity[d];
             double all = inner + v->ext[3 * i + d];
+            if (v->holding > 0) all += v->holding * v->held[3 * i + d];
             v->inner_now[3 * i + d] = inner;
             f[4 * i + d] = all;
             bool fixed = net->fixed_bits[i] >> d & 1;
-            v->b[3 * i + d] = fixed ? 0.0 : all;
+            bool loose = call.parts && call.parts->loose[i]; // stays where it is
+            v->b[3 * i + d] = fixed || loose ? 0.0 : all;
             ext2 += v->ext[3 * i + d] * v->ext[3 * i + d];
+            if (loose) continue;
             if (fixed)
                 fixed2 += all * all;
             else
@@ -126,7 +135,8 @@ static void assemble(solver *v) {
     const sn_tangent_call call = {.u = v->s->u,
                                   .factors = v->s->factors,
                                   .history = v->history,
-                                  .pressure = v->s->now.pressure};
+                                  .pressure = v->s->now.pressure,
+                                  .parts = sn_state_parts(v->s)};
     sn_tangent_assemble(v->net, v->tangent, &call);
     if (v->net->tool_count > 0) external(v, v->tangent);
     sn_tangent_prepare(v->net, v->tangent);
@@ -193,7 +203,7 @@ static bool predict(solver *v, double h) {
     remember_place(v);
     place(v, 1.0);
     land_prescribed(v);
-    v->smallest = sn_net_smallest_ratio(v->net, v->s->u);
+    v->smallest = sn_net_smallest_ratio(v->net, sn_state_parts(v->s), v->s->u);
     if (!(v->smallest > 0)) return false;
     v->residual = find_residual(v, SN_MEMORY_TRIAL);
     return isfinite(v->residual);
@@ -210,7 +220,7 @@ static bool correct(solver *v, double forcing) {
     double part = 1.0, before = v->residual;
     for (int k = 0; k < HALVINGS; k++, part *= 0.5) {
         place(v, part);
-        v->smallest = sn_net_smallest_ratio(v->net, v->s->u);
+        v->smallest = sn_net_smallest_ratio(v->net, sn_state_parts(v->s), v->s->u);
         if (!(v->smallest > 0)) continue;
         v->residual = find_residual(v, SN_MEMORY_TRIAL);
         if (v->residual < (1.0 - 1e-3 * part) * before) return true;
@@ -248,14 +258,20 @@ static void use_factors(solver *v, double h) {
     sn_net_history(v->net, v->s->factors, v->s->store, v->history);
 }
 
-// accepts a step: memory, contact, work
-static void accept(solver *v, double h) {
+// takes what was found for the state: memory and contact
+static void keep(solver *v) {
     const sn_net *net = v->net;
     sn_state *s = v->s;
-    const double *u = s->u;
     find_residual(v, SN_MEMORY_ADVANCE);
     memcpy(s->contact, v->touch,
            (size_t)net->tool_count * (size_t)net->contact_count * sizeof *s->contact);
+}
+
+// accepts a step: memory, contact, work
+static void accept(solver *v, double h) {
+    const sn_net *net = v->net;
+    const double *u = v->s->u;
+    keep(v);
     double work = 0;
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
@@ -281,6 +297,18 @@ static void give_up(solver *v, double h) {
         v->time, v->net->until, v->residual / v->scale, v->smallest, s->cutbacks, h);
 }
 
+// factors of a change that takes no time
+static void use_sudden_factors(solver *v) {
+    use_factors(v, 1e-12 * v->net->until);
+    for (int r = 0; r < v->net->region_count; r++) { // no impulse of the viscous part
+        const sn_net_region *g = &v->net->region[r];
+        if (!(g->memory.viscous > 0)) continue;
+        v->s->factors[r].alpha -= v->s->factors[r].gain[g->memory.terms];
+        v->s->factors[r].gain[g->memory.terms] = 0;
+    }
+    sn_net_history(v->net, v->s->factors, v->s->store, v->history);
+}
+
 // all that acts at time 0 acts at once: instantaneous stiffness, the loads in parts where needed
 static bool start_up(solver *v) {
     double part = 1.0;
@@ -289,14 +317,7 @@ static bool start_up(solver *v) {
     for (int cuts = 0; v->level < 1.0;) {
         double from = v->level;
         v->level = fmin(1.0, from + part);
-        use_factors(v, 1e-12 * v->net->until);
-        for (int r = 0; r < v->net->region_count; r++) { // no impulse of the viscous part
-            const sn_net_region *g = &v->net->region[r];
-            if (!(g->memory.viscous > 0)) continue;
-            v->s->factors[r].alpha -= v->s->factors[r].gain[g->memory.terms];
-            v->s->factors[r].gain[g->memory.terms] = 0;
-        }
-        sn_net_history(v->net, v->s->factors, v->s->store, v->history);
+        use_sudden_factors(v);
         if (equilibrium(v, part)) {
             accept(v, part);
             continue;
@@ -311,6 +332,88 @@ static bool start_up(solver *v) {
     }
     v->last_step = 0; // what happened at once goes on no further
     return true;
+}
+
+//---- cuts ----------------------------------------------------------------------------------------
+
+static sn_moment moment_of(const solver *v) {
+    return (sn_moment){.time = v->s->time,
+                       .precision = SN_DOUBLE,
+                       .u = v->s->u,
+                       .f = v->s->now.f,
+                       .store = v->s->store,
+                       .pressure = v->s->now.pressure,
+                       .tool_force = v->s->tool_force,
+                       .parts = sn_state_parts(v->s)};
+}
+
+static double work_of_loads(const solver *v, const double *from) {
+    const double *u = v->s->u;
+    double work = 0;
+    for (int i = 0; i < v->net->nodes; i++)
+        for (int d = 0; d < 3; d++) work += v->ext[3 * i + d] * (u[4 * i + d] - from[4 * i + d]);
+    return work;
+}
+
+// from the place before the cut to equilibrium of what is left: forces that balance the cut fade
+// away, at once or in parts where needed. work: of loads. False where there is none to be found
+static bool spring_back(solver *v, double *work) {
+    const size_t n = (size_t)v->net->nodes * 3;
+    double part = 1.0;
+    use_sudden_factors(v);
+    v->holding = 0;
+    find_residual(v, SN_MEMORY_TRIAL);
+    for (size_t k = 0; k < n; k++) v->held[k] = -v->b[k];
+    for (v->holding = 1.0; v->holding > 0;) {
+        const double from = v->holding;
+        v->holding = fmax(0.0, from - part);
+        use_sudden_factors(v);
+        if (equilibrium(v, part)) {
+            *work += work_of_loads(v, v->start);
+            keep(v);
+            continue;
+        }
+        v->holding = from;
+        part *= 0.5;
+        v->run->summary->cutbacks++;
+        if (part < least_step) {
+            v->holding = 0;
+            give_up(v, 0.0);
+            return false;
+        }
+    }
+    memcpy(v->inner, v->inner_now, n * sizeof *v->inner);
+    memset(v->last, 0, n * sizeof *v->last); // what happened at once goes on no further
+    v->last_step = 0;
+    return true;
+}
+
+// cuts of the case that are due. What the body gives off as it springs back is lost as well: here
+// nothing moves
+static sn_status cut(solver *v, bool *good) {
+    const int *cells;
+    int count;
+    *good = true;
+    while (*good && sn_state_due_cut(v->net, v->s, &count, &cells)) {
+        const sn_moment before = moment_of(v);
+        SN_TRY(sn_run_cut(v->run, v->s, &before, count, cells));
+        v->time = v->s->time;
+        *good = !sn_state_has_free_piece(v->s);
+        if (!*good) {
+            v->run->summary->converged = false;
+            snprintf(v->run->summary->reason, sizeof v->run->summary->reason,
+                     "the cut at %.6g s leaves a piece that no support or prescribed motion holds: "
+                     "it has no equilibrium; use integrator explicit or implicit",
+                     v->time);
+        }
+        double work = 0;
+        if (*good) *good = spring_back(v, &work);
+        v->run->internal_work += work;
+        v->run->external_work += work;
+        const sn_moment after = moment_of(v);
+        v->run->released += work - sn_run_store(v->run, &after);
+    }
+    return SN_OK;
 }
 
 /// How long steps are to be after the corner at s->time.
@@ -377,16 +480,6 @@ static bool step(solver *v, double *h) {
     return true;
 }
 
-static sn_moment moment_of(const solver *v) {
-    return (sn_moment){.time = v->s->time,
-                       .precision = SN_DOUBLE,
-                       .u = v->s->u,
-                       .f = v->s->now.f,
-                       .store = v->s->store,
-                       .pressure = v->s->now.pressure,
-                       .tool_force = v->s->tool_force};
-}
-
 static sn_status march(solver *v) {
     const sn_net *net = v->net;
     const double tiny = 1e-9 * net->until;
@@ -415,6 +508,9 @@ static sn_status march(solver *v) {
         p = set_pace(v, corners);
     }
     while (v->s->time < net->until) {
+        bool good;
+        SN_TRY(cut(v, &good));
+        if (!good) return SN_OK;
         double due = sn_run_output_time(net, output);
         double next = fmin(fmin(due, corner), net->until), left = next - v->s->time;
         double wish = fmin(p.wish, p.longest), h = left / fmax(1.0, ceil(left / wish - 1e-6));
@@ -442,8 +538,8 @@ static sn_status march(solver *v) {
 }
 
 static void destroy(solver *v) {
-    void *all[] = {v->history, v->start, v->before, v->b,     v->x,
-                   v->last,    v->ext,   v->inner,  v->touch, v->inner_now};
+    void *all[] = {v->history, v->start, v->before, v->b,         v->x,   v->last,
+                   v->ext,     v->inner, v->touch,  v->inner_now, v->held};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_tangent_destroy(v->tangent);
     sn_state_destroy(v->s);
@@ -463,9 +559,10 @@ static sn_status create(solver *v) {
     v->ext = sn_alloc(n * 3, sizeof(double));
     v->inner = sn_alloc(n * 3, sizeof(double));
     v->inner_now = sn_alloc(n * 3, sizeof(double));
+    v->held = sn_alloc(net->cuttable ? n * 3 : 0, sizeof(double));
     v->touch = sn_alloc((size_t)net->tool_count * (size_t)net->contact_count, sizeof *v->touch);
     bool all = v->history && v->start && v->before && v->b && v->x && v->last && v->ext &&
-               v->inner && v->inner_now && v->touch;
+               v->inner && v->inner_now && v->touch && v->held;
     if (!all) return SN_E_MEMORY;
     // rounding of the forces of a cell, 1e-16 of its stiffness times edge, must stay below
     // tolerance

@@ -4,9 +4,11 @@
 // The ledger. elastic: of the equilibrium part of the law, g_inf (W + U). memory: stored in the
 // branches (energy.c). external work: of gravity, loads, tools, supports and prescribed motion, by
 // the trapezoidal rule over each step; what a tool's friction and penalty take stays on the tool's
-// side. dissipated: what damping by mass took, and with memory or damping by stiffness the work
-// done on the tissue less what it stored, which is never below zero but for the trapezoidal rule
-// and, in cells and smoothed edges, the approximation of energy.c. residual: what is left of
+// side. What a cut removes is dissipated too: the stored energy before it less that after it
+// (released_J). dissipated: that, what damping by mass took, and with memory or damping by
+// stiffness the work done on the tissue less what it stored, which is never below zero but for the
+// trapezoidal rule and, in cells and smoothed edges, the approximation of energy.c. residual: what
+// is left of
 //     kinetic + elastic + memory + dissipated - external work;
 // with memory it shows the integration of the motion (with the implicit integrator what that takes
 // out of it), without memory that of the tissue too. energy_residual is over the largest of them.
@@ -51,9 +53,9 @@ static bool remembers(const sn_net *net) {
     return false;
 }
 
-// what the tissue took of the work done on it, J
+// what the tissue took of the work done on it, J; what cuts took is in the first already
 static double lost_inside(const sn_run *run, double stored) {
-    return remembers(run->net) ? run->internal_work - (stored - run->stored_start) : 0.0;
+    return remembers(run->net) ? run->internal_work - (stored - run->stored_start) : run->released;
 }
 
 static const char *const energy_columns[] = {
@@ -138,6 +140,7 @@ static void finish(sn_run *run) {
     s->external_work_J = run->external_work;
     const double stored = s->elastic_J + s->memory_J;
     s->dissipated_J += lost_inside(run, stored);
+    s->released_J = run->released;
     double left = s->kinetic_J - run->kinetic_start + stored - run->stored_start + s->dissipated_J -
                   s->external_work_J;
     double largest = fmax(fmax(fabs(s->kinetic_J), stored),

@@ -10,7 +10,7 @@
 
 #include "springs/net.h"
 
-#define SNAPSHOT_VERSION 1u
+#define SNAPSHOT_VERSION 2u
 #define SNAPSHOT_ORDER 0x01020304u
 
 /// What stands before the pieces.
@@ -50,10 +50,11 @@ uint64_t sn_net_fingerprint(const sn_case *c, const sn_net *net) {
                               net->step,
                               net->omega2,
                               SN_BLOCK,
+                              net->cuttable,
                               (double)sizeof(sn_run_summary)};
     uint64_t hash = sn_hash(sn_case_fingerprint(c), numbers, sizeof numbers);
     for (int r = 0; r < net->region_count; r++) hash = mix_region(hash, &net->region[r]);
-    return hash;
+    return sn_cutting_mix(hash, net);
 }
 
 //---- pieces --------------------------------------------------------------------------------------
@@ -114,9 +115,11 @@ static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
         PIECE(gripped_count),
     };
     const int count = (int)(sizeof all / sizeof *all);
-    SN_ASSERT(count + SN_IMPLICIT_PIECES <= SN_PIECES_MAX);
+    SN_ASSERT(count + SN_CUT_PIECES + SN_IMPLICIT_PIECES <= SN_PIECES_MAX);
     memcpy(piece, all, sizeof all);
-    return count + (s->implicit ? sn_implicit_pieces(net, s->implicit, piece + count) : 0);
+    const int cuts = s->cut ? sn_cut_pieces(net, s->cut, piece + count) : 0;
+    return count + cuts +
+           (s->implicit ? sn_implicit_pieces(net, s->implicit, piece + count + cuts) : 0);
 }
 
 static void write_pieces(const sn_piece *piece, int count, unsigned char *to) {
@@ -191,6 +194,7 @@ sn_status sn_state_load(const sn_net *net, sn_state *s, const void *bytes, size_
         return sn_fail(SN_E_DATA, "state: %zu bytes, expected %zu", size,
                        sizeof(snapshot_head) + total(piece, count));
     read_pieces(piece, count, (const unsigned char *)bytes + sizeof(snapshot_head));
+    if (s->cut) sn_cut_restore(net, s->cut);
     return SN_OK;
 }
 
@@ -201,7 +205,7 @@ typedef struct run_numbers {
     int rows, columns;
     int energy_columns;            ///< of the rows of sn_output.energy; 0: none was asked for
     double elapsed, step_wall_max; ///< wall time
-    double internal_work, external_work, stored_start, kinetic_start;
+    double internal_work, external_work, released, stored_start, kinetic_start;
     sn_run_summary summary;
 } run_numbers;
 
@@ -239,6 +243,7 @@ sn_status sn_run_save(sn_run *run, const sn_state *s, const sn_piece *own, int c
     numbers->elapsed = sn_clock() - run->started;
     numbers->internal_work = run->internal_work;
     numbers->external_work = run->external_work;
+    numbers->released = run->released;
     numbers->stored_start = run->stored_start;
     numbers->kinetic_start = run->kinetic_start;
     numbers->summary = *run->summary;
@@ -267,6 +272,7 @@ static void take_numbers(sn_run *run, const run_numbers *numbers) {
     run->started -= numbers->elapsed;
     run->internal_work = numbers->internal_work;
     run->external_work = numbers->external_work;
+    run->released = numbers->released;
     run->stored_start = numbers->stored_start;
     run->kinetic_start = numbers->kinetic_start;
     *run->summary = numbers->summary;
@@ -311,6 +317,7 @@ sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count) 
         goto fail;
     }
     read_pieces(piece, pieces, from);
+    if (s->cut) sn_cut_restore(run->net, s->cut);
     take_numbers(run, numbers);
 fail:
     sn_free(piece);

@@ -79,6 +79,7 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
         return SN_E_MEMORY;
     }
     sn_status status = sn_team_create(net->threads, &s->team);
+    if (status == SN_OK && net->cuttable) status = sn_cut_create(net, &s->cut);
     if (status == SN_OK && net->integrator == SN_INTEGRATOR_IMPLICIT)
         status = sn_implicit_create(net, &s->implicit);
     if (status != SN_OK) {
@@ -94,6 +95,7 @@ void sn_state_destroy(sn_state *s) {
     if (!s) return;
     sn_team_destroy(s->team);
     sn_implicit_destroy(s->implicit);
+    sn_cut_destroy(s->cut);
     sn_scratch_destroy(&s->now);
     sn_scratch_destroy(&s->probe);
     void *all[] = {s->chunk_sum,  s->chunk_fastest, s->u,          s->v,           s->f_before,
@@ -107,10 +109,12 @@ void sn_state_destroy(sn_state *s) {
 
 // loads and contact at the present place and time, added to the forces
 static void find_outer(const sn_net *net, sn_state *s) {
-    sn_net_clear_ext(net, s->ext);
+    const sn_parts *parts = sn_state_parts(s);
+    const sn_load_call load = {s->precision, s->u, parts};
+    sn_net_clear_ext(net, parts, s->ext);
     for (int l = 0; l < net->load_count; l++)
-        sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, s->time),
-                        s->precision, s->u, s->ext);
+        sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, s->time), &load,
+                        s->ext);
     for (int t = 0; t < net->tool_count; t++)
         sn_net_tool_pose(net, s, t, s->time, &s->tool_pose[t]);
     const sn_contact_call touch = {.precision = s->precision,
@@ -121,9 +125,10 @@ static void find_outer(const sn_net *net, sn_state *s) {
                                    .ext = s->ext,
                                    .tool_force = s->tool_force,
                                    .tool_torque = s->tool_torque,
-                                   .grip = s->gripped_count > 0 ? s->grip : NULL};
+                                   .grip = s->gripped_count > 0 ? s->grip : NULL,
+                                   .parts = parts};
     s->contact_omega2 = sn_net_contact(net, &touch);
-    for (int k = 0; k < net->loaded_count; k++)
+    for (int k = 0; k < sn_net_loaded(net, parts); k++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)net->loaded[k] + (size_t)d;
             sn_real_put(s->precision, s->now.f, at,
@@ -138,13 +143,18 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                 .u = s->u,
                                 .factors = s->factors,
                                 .store = s->store,
+                                .parts = sn_state_parts(s),
                                 .upright = s->crushed,
                                 .out = &s->now,
                                 .team = s->team};
     sn_net_forces(net, &call);
-    if (net->loaded_count > 0) find_outer(net, s);
+    if (sn_net_loaded(net, sn_state_parts(s)) > 0) find_outer(net, s);
     sn_state_add_pushes(s);
     sn_state_pull_tools(net, s);
+}
+
+void sn_state_find_forces(const sn_net *net, sn_state *s) {
+    find_forces(net, s, SN_MEMORY_ADVANCE);
 }
 
 // forces after a sudden change: the branches take all of it, as by a step of no length
@@ -179,6 +189,8 @@ void sn_state_rest(const sn_net *net, sn_state *s) {
     s->last_step = 0;
     s->crushed = false;
     change_suddenly(net, s);
+    if (sn_state_parts(s) && net->integrator == SN_INTEGRATOR_EXPLICIT)
+        sn_state_find_frequency(net, s);
     memcpy(s->f_before, s->now.f, nodes * 4 * size);
     if (s->implicit) sn_implicit_reset(net, s->implicit);
 }
@@ -189,6 +201,7 @@ void sn_state_reset(const sn_net *net, sn_state *s) {
     s->warnings = 0;
     s->broken = false;
     s->damped_energy = 0;
+    if (s->cut) sn_cut_mend(net, s->cut);
     sn_state_clear_imposed(net, s);
     sn_state_rest(net, s);
 }
@@ -218,28 +231,30 @@ static void solve3(const double A[9], const double b[3], double w[3]) {
     for (int i = 0; i < 3; i++) w[i] = done[i] ? M[i][3] / M[i][i] : 0.0;
 }
 
-typedef struct rigid_motion {
-    double centre[3], linear[3], spin[3];
-} rigid_motion;
-
-// velocity and spin with the momentum and angular momentum of the whole
-static void find_rigid(const sn_net *net, const sn_state *s, rigid_motion *move) {
-    double mass = 0, centre[3] = {0}, momentum[3] = {0}, spin[3] = {0}, inertia[9] = {0};
+// velocity and spin with the momentum and angular momentum of each piece; piece: Nullable, of nodes
+static void find_rigid(const sn_net *net, const sn_state *s, const int *piece, int pieces,
+                       sn_rigid *all) {
+    memset(all, 0, (size_t)pieces * sizeof *all);
     for (int i = 0; i < net->nodes; i++) {
-        mass += net->mass[i];
+        if (piece && piece[i] < 0) continue;
+        sn_rigid *move = &all[piece ? piece[i] : 0];
+        move->mass += net->mass[i];
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
-            centre[d] +=
+            move->centre[d] +=
                 net->mass[i] * (net->node_position[3 * i + d] + sn_real_at(s->precision, s->u, at));
-            momentum[d] += net->mass[i] * sn_real_at(s->precision, s->v, at);
+            move->linear[d] += net->mass[i] * sn_real_at(s->precision, s->v, at);
         }
     }
-    for (int d = 0; d < 3; d++) {
-        move->centre[d] = centre[d] / mass;
-        move->linear[d] = momentum[d] / mass;
-    }
+    for (int k = 0; k < pieces; k++)
+        for (int d = 0; d < 3; d++) {
+            all[k].centre[d] /= all[k].mass;
+            all[k].linear[d] /= all[k].mass;
+        }
     for (int i = 0; i < net->nodes; i++) {
         double r[3], v[3], m = net->mass[i], r2 = 0;
+        if (piece && piece[i] < 0) continue;
+        sn_rigid *move = &all[piece ? piece[i] : 0];
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)i + (size_t)d;
             r[d] = net->node_position[3 * i + d] + sn_real_at(s->precision, s->u, at) -
@@ -249,11 +264,16 @@ static void find_rigid(const sn_net *net, const sn_state *s, rigid_motion *move)
         }
         for (int d = 0; d < 3; d++) {
             int e = (d + 1) % 3, g = (d + 2) % 3;
-            spin[d] += m * (r[e] * v[g] - r[g] * v[e]);
-            for (int k = 0; k < 3; k++) inertia[3 * d + k] += m * ((d == k) * r2 - r[d] * r[k]);
+            move->spin[d] += m * (r[e] * v[g] - r[g] * v[e]);
+            for (int k = 0; k < 3; k++)
+                move->inertia[3 * d + k] += m * ((d == k) * r2 - r[d] * r[k]);
         }
     }
-    solve3(inertia, spin, move->spin);
+    for (int k = 0; k < pieces; k++) {
+        double momentum[3];
+        memcpy(momentum, all[k].spin, sizeof momentum);
+        solve3(all[k].inertia, momentum, all[k].spin);
+    }
 }
 
 static double kinetic(const sn_net *net, const sn_state *s) {
@@ -267,7 +287,7 @@ static double kinetic(const sn_net *net, const sn_state *s) {
 }
 
 // v += the kick of half a step by the present forces, but of nodes that tools hold
-static void half_kick(const sn_net *net, sn_state *s, double half) {
+void sn_state_half_kick(const sn_net *net, sn_state *s, double half) {
     for (size_t k = 0; k < 4 * (size_t)net->nodes; k++) {
         if (s->grip[k / 4].tool >= 0) continue;
         double a = sn_real_at(s->precision, s->now.f, k) *
@@ -279,13 +299,17 @@ static void half_kick(const sn_net *net, sn_state *s, double half) {
 // on the velocity at the time of u, between the halves of the kick: second order (but for a term of
 // damping^2 h where supports hold part of the rigid motion), and what it takes can be counted
 static void damp(const sn_net *net, sn_state *s, double h) {
-    rigid_motion move;
-    half_kick(net, s, 0.5 * s->last_step);
-    find_rigid(net, s, &move);
+    sn_rigid whole, *all = sn_state_rigid(s) ? sn_state_rigid(s) : &whole;
+    int pieces = 1;
+    const int *piece = sn_state_pieces(s, &pieces);
+    sn_state_half_kick(net, s, 0.5 * s->last_step);
+    find_rigid(net, s, piece, pieces, all);
     const double keep = exp(-0.5 * net->damping * (s->last_step + h));
     double before = kinetic(net, s);
     for (int i = 0; i < net->nodes; i++) {
         double r[3];
+        if (piece && piece[i] < 0) continue; // a node alone has no motion but its own
+        const sn_rigid move = all[piece ? piece[i] : 0];
         for (int d = 0; d < 3; d++)
             r[d] = net->node_position[3 * i + d] +
                    sn_real_at(s->precision, s->u, 4 * (size_t)i + (size_t)d) - move.centre[d];
@@ -299,7 +323,7 @@ static void damp(const sn_net *net, sn_state *s, double h) {
         }
     }
     s->damped_energy += before - kinetic(net, s);
-    half_kick(net, s, -0.5 * s->last_step);
+    sn_state_half_kick(net, s, -0.5 * s->last_step);
 }
 
 //---- steps ---------------------------------------------------------------------------------------
@@ -337,6 +361,16 @@ static void move_nodes(const sn_net *net, sn_state *s, const void *force, double
     *fastest = sqrt(3 * largest);
 }
 
+// a bound of the speed of any node that has cells: those that have none change no force
+static double fastest_bound(const sn_net *net, const sn_state *s) {
+    const bool *loose = sn_state_parts(s)->loose;
+    double most = 0;
+    for (int i = 0; i < net->nodes; i++)
+        for (int d = 0; d < 3 && !loose[i]; d++)
+            most = fmax(most, fabs(sn_real_at(s->precision, s->v, 4 * (size_t)i + (size_t)d)));
+    return sqrt(3.0) * most;
+}
+
 static void move_prescribed(const sn_net *net, sn_state *s, double h) {
     for (int k = 0; k < net->fixed_count; k++) {
         const sn_net_fixed *fixed = &net->fixed[k];
@@ -362,13 +396,18 @@ static sn_frequency_call frequency_call(sn_state *s, int steps) {
                                .steps = steps,
                                .scratch = &s->probe,
                                .team = s->team,
+                               .parts = sn_state_parts(s),
                                .upright = s->crushed};
 }
 
 static void look_at_frequency(const sn_net *net, sn_state *s) {
     sn_state_look_at_cells(net, s);
-    const sn_frequency_call call = frequency_call(s, SN_LANCZOS_WARM);
+    const bool whole = !sn_state_parts(s);
+    const sn_frequency_call call = frequency_call(s, whole ? SN_LANCZOS_WARM : 2 * SN_LANCZOS_WARM);
     double omega2 = sn_net_frequency(net, &call);
+    // a search that follows one mode is blind to pieces apart from it: what they were as one is the
+    // least that a cut body is taken for
+    if (!whole) omega2 = fmax(omega2, net->omega2);
     if (isfinite(omega2) && omega2 > 0) {
         double growth = omega2 / s->seen_omega2;
         if (fabs(growth - 1.0) > 0.1) {
@@ -420,6 +459,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
     s->f_before = f;
     double sum, fastest;
     move_nodes(net, s, f, h, &sum, &fastest);
+    if (sn_state_parts(s)) fastest = fastest_bound(net, s);
     move_prescribed(net, s, h);
     sn_state_move_grips(net, s, h);
     s->time += h;
@@ -454,6 +494,7 @@ static bool same_body(const sn_net *a, const sn_net *b) {
            a->spring_blocks == b->spring_blocks && a->tool_count == b->tool_count &&
            a->contact_count == b->contact_count && a->factor_count == b->factor_count &&
            a->fixed_count == b->fixed_count && a->part_count == b->part_count &&
+           a->cuttable == b->cuttable &&
            memcmp(a->node_position, b->node_position, nodes * 3 * sizeof(double)) == 0 &&
            memcmp(a->cell_node, b->cell_node, corners * sizeof(int)) == 0;
 }
@@ -464,9 +505,7 @@ static bool same_branches(const sn_net *a, const sn_net *b) {
     return true;
 }
 
-// the highest frequency at the present place, not followed from before
-static void find_frequency(const sn_net *net, sn_state *s) {
-    memcpy(s->mode, net->mode, (size_t)net->nodes * 3 * sizeof *s->mode);
+void sn_state_find_frequency(const sn_net *net, sn_state *s) {
     const sn_frequency_call call = frequency_call(s, SN_LANCZOS_MAX);
     double omega2 = fmax(sn_net_frequency(net, &call), sn_net_frequency(net, &call));
     s->seen_omega2 = isfinite(omega2) && omega2 > 0 ? omega2 : net->omega2;
@@ -488,7 +527,9 @@ sn_status sn_state_move(const sn_net *from, const sn_net *to, sn_state *s) {
         s->store = store;
         if (store) memset(store, 0, to->store_size * size);
     }
+    if (s->cut) sn_cut_restore(to, s->cut);
     change_suddenly(to, s);
-    find_frequency(to, s);
+    memcpy(s->mode, to->mode, (size_t)to->nodes * 3 * sizeof *s->mode);
+    sn_state_find_frequency(to, s);
     return SN_OK;
 }

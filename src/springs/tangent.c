@@ -79,6 +79,7 @@ sn_status sn_tangent_create(const sn_net *net, sn_tangent **tangent) {
     t->stiffness = sn_alloc(points, sizeof *t->stiffness);
     t->along = sn_alloc(points, sizeof *t->along);
     t->inverse = sn_alloc(n * 3, sizeof *t->inverse);
+    t->piece_sum = sn_alloc(net->cuttable ? (size_t)net->nodes / 4 + 1 : 0, sizeof(double));
     t->r = sn_alloc(n, sizeof *t->r);
     t->z = sn_alloc(n, sizeof *t->z);
     t->p = sn_alloc(n, sizeof *t->p);
@@ -87,8 +88,8 @@ sn_status sn_tangent_create(const sn_net *net, sn_tangent **tangent) {
     t->shadow = sn_alloc(t->rubs ? n : 0, sizeof *t->shadow);
     t->y = sn_alloc(t->rubs ? n : 0, sizeof *t->y);
     t->v = sn_alloc(t->rubs ? n : 0, sizeof *t->v);
-    status = t->block && t->flux && t->stiffness && t->along && t->inverse && t->r && t->z &&
-                     t->p && t->q && t->shadow && t->y && t->v
+    status = t->block && t->flux && t->stiffness && t->along && t->inverse && t->piece_sum &&
+                     t->r && t->z && t->p && t->q && t->shadow && t->y && t->v
                  ? SN_OK
                  : SN_E_MEMORY;
 fail:
@@ -111,6 +112,7 @@ void sn_tangent_destroy(sn_tangent *t) {
                    t->stiffness,
                    t->inverse,
                    t->along,
+                   t->piece_sum,
                    t->r,
                    t->z,
                    t->p,
@@ -264,7 +266,7 @@ static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region
     const bool coupled = net->rung == SN_RUNG_COUPLED;
     const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     const size_t base = (size_t)(block - region->cell_block) * components * SN_BLOCK;
-    const double *volume = net->data[SN_DOUBLE].volume;
+    const double *volume = sn_parts_volume(net, call->parts, SN_DOUBLE);
     if (coupled) block_law(net, region, block, call->u, law);
     for (size_t lane = 0; lane < SN_BLOCK; lane++) {
         const int slot = block * SN_BLOCK + (int)lane;
@@ -296,7 +298,8 @@ static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region
 static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *region, double alpha,
                        int slot, const sn_tangent_call *call) {
     const sn_net_data *data = &net->data[SN_DOUBLE];
-    const double k = ((const double *)data->stiffness)[slot], B = region->exponent;
+    const double *stiffness = sn_parts_stiffness(net, call->parts, SN_DOUBLE);
+    const double k = stiffness[slot], B = region->exponent;
     const double inverse = ((const double *)data->inverse)[slot];
     const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
     if (!(k > 0)) return;
@@ -348,7 +351,7 @@ void sn_tangent_assemble(const sn_net *net, sn_tangent *t, const sn_tangent_call
             for (int s = g->spring_block * SN_BLOCK;
                  s < (g->spring_block + g->spring_blocks) * SN_BLOCK; s++)
                 add_spring(net, t, g, alpha, s, call);
-        const double *stiffness = net->data[SN_DOUBLE].point_stiffness;
+        const double *stiffness = sn_parts_point_stiffness(net, call->parts, SN_DOUBLE);
         for (int p = g->point_block * SN_BLOCK; p < (g->point_block + g->point_blocks) * SN_BLOCK;
              p++)
             t->stiffness[p] = alpha * stiffness[p];
@@ -377,6 +380,21 @@ void sn_tangent_lower(sn_tangent *t, int count, const double *vectors, double fa
     t->lowered = count;
     t->lower = vectors;
     t->lower_factor = factor;
+}
+
+void sn_tangent_lower_pieces(sn_tangent *t, const int *piece, int pieces) {
+    t->piece = piece;
+    t->pieces = pieces;
+}
+
+// y -= factor b (b . x), by pieces
+static void lower_pieces(const sn_tangent *t, size_t n, const double *b, const double *x,
+                         double *y) {
+    memset(t->piece_sum, 0, (size_t)t->pieces * sizeof *t->piece_sum);
+    for (size_t i = 0; i < n; i++)
+        if (t->piece[i / 3] >= 0) t->piece_sum[t->piece[i / 3]] += b[i] * x[i];
+    for (size_t i = 0; i < n; i++)
+        if (t->piece[i / 3] >= 0) y[i] -= t->lower_factor * t->piece_sum[t->piece[i / 3]] * b[i];
 }
 
 // inverse of a symmetric 3 x 3 block; a diagonal one where it is not positive definite
@@ -445,7 +463,12 @@ void sn_tangent_multiply(const sn_net *net, sn_tangent *t, const double *x, doub
     }
     const size_t n = (size_t)net->nodes * 3;
     for (int k = 0; k < t->lowered; k++) {
-        const double *b = t->lower + (size_t)k * n, off = t->lower_factor * sn_dot(b, x, n);
+        const double *b = t->lower + (size_t)k * n;
+        if (t->piece) {
+            lower_pieces(t, n, b, x, y);
+            continue;
+        }
+        const double off = t->lower_factor * sn_dot(b, x, n);
         for (size_t i = 0; i < n; i++) y[i] -= off * b[i];
     }
 }

@@ -22,6 +22,9 @@ struct sn_tangent {
     int lowered;        // vectors taken off
     const double *lower;
     double lower_factor;
+    const int *piece; // Nullable
+    int pieces;
+    double *piece_sum;          // (nodes / 4 + 1)
     bool rubs;                  // friction may make it unsymmetric
     bool unsymmetric;           // it has
     double *r, *z, *p, *q;      // scratch of the solvers

@@ -37,8 +37,10 @@ static int place_of(struct sn_cluster *c, int node) {
 }
 
 // nodes, volume and gradients of the cluster of an edge
-static void gather_cluster(const sn_net *net, int edge, struct sn_cluster *c) {
-    const double *gradient = net->data[SN_DOUBLE].gradient, *volume = net->data[SN_DOUBLE].volume;
+static void gather_cluster(const sn_net *net, const sn_parts *parts, int edge,
+                           struct sn_cluster *c) {
+    const double *gradient = net->data[SN_DOUBLE].gradient;
+    const double *volume = sn_parts_volume(net, parts, SN_DOUBLE);
     c->nodes = 0;
     c->V = 0;
     for (int s = net->edge_start[edge]; s < net->edge_start[edge + 1]; s++) {
@@ -131,7 +133,7 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
     for (int e = region->edge_block * SN_BLOCK;
          e < (region->edge_block + region->edge_blocks) * SN_BLOCK; e++) {
         if (net->edge_filling[e]) continue;
-        gather_cluster(net, e, c);
+        gather_cluster(net, call->parts, e, c);
         if (!(c->V > 0)) continue;
         deform(net, call->u, c);
         sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, c->E, NULL, c->S, c->D);
@@ -163,7 +165,7 @@ static sn_status list_clusters(const sn_net *net, struct sn_cluster *c, int **st
     for (int pass = 0; pass < 2; pass++) {
         for (int e = 0; e < net->edge_blocks * SN_BLOCK; e++) {
             if (net->edge_filling[e]) continue;
-            gather_cluster(net, e, c);
+            gather_cluster(net, NULL, e, c);
             for (int a = 0; a < c->nodes; a++) {
                 if (pass == 0)
                     from[c->node[a] + 2]++;
@@ -184,7 +186,7 @@ static int find_row(const sn_net *net, struct sn_cluster *c, const int *edge, in
                     int name, int *row) {
     int count = 0;
     for (int k = 0; k < edges; k++) {
-        gather_cluster(net, edge[k], c);
+        gather_cluster(net, NULL, edge[k], c);
         for (int a = 0; a < c->nodes; a++) {
             if (seen[c->node[a]] == name) continue;
             seen[c->node[a]] = name;

@@ -8,11 +8,12 @@
 static const double fallen = -0.5; // growth J - 1 of a volume point
 
 static bool a_point_fell(const sn_net *net, const sn_state *s) {
+    const double *volume = sn_parts_point_volume(net, sn_state_parts(s));
     for (int p = 0; p < net->point_blocks * SN_BLOCK; p++) {
         double sum = 0;
         for (int k = net->point_start[p]; k < net->point_start[p + 1]; k++)
             sum += sn_real_at(s->precision, s->now.growth, (size_t)net->point_item[k]);
-        if (sum < fallen * net->point_volume[p]) return true;
+        if (sum < fallen * volume[p]) return true;
     }
     return false;
 }
@@ -34,8 +35,10 @@ static double six_volumes(const sn_net *net, const sn_state *s, int slot, double
 }
 
 static bool a_cell_is_crushed(const sn_net *net, const sn_state *s) {
+    const sn_parts *parts = sn_state_parts(s);
     for (int e = 0; e < net->cells; e++) {
         const int slot = net->cell_slot[e];
+        if (parts && parts->gone[slot]) continue;
         if (six_volumes(net, s, slot, 1) < SN_UPRIGHT * six_volumes(net, s, slot, 0)) return true;
     }
     return false;

@@ -34,15 +34,21 @@ same() { # same DIR
 "$SINEW" run poke.yaml --engine springs --out whole --quiet
 [ ! -e whole/state.bin ] || die "the state of a run that is done was kept"
 
-# killed again and again, at any moment
+# killed again and again, each time a while after it saved something new: a slow machine waits
+# longer, and what is tried stays the same
 tries=0
 killed=0
 while :; do
     [ -e part/state.bin ] && into=--resume || into=--out
+    touch before
     "$SINEW" run poke.yaml --engine springs $into part --quiet &
     pid=$!
-    [ $tries = 40 ] || sleep "0.$(awk "BEGIN { srand($tries); printf \"%03d\", 20 + 180 * rand() }")"
-    [ $tries = 40 ] || kill -9 $pid 2>/dev/null || :
+    while [ $tries != 12 ] && kill -0 $pid 2>/dev/null &&
+        [ -z "$(find part -name state.bin -newer before 2>/dev/null)" ]; do
+        sleep 0.01
+    done
+    [ $tries = 12 ] || sleep "0.$(awk "BEGIN { srand($tries); printf \"%03d\", 60 * rand() }")"
+    [ $tries = 12 ] || kill -9 $pid 2>/dev/null || :
     code=0
     wait $pid || code=$?
     [ $code != 0 ] || break

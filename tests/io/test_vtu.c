@@ -133,6 +133,49 @@ static void test_frames(void **state) {
     sn_mesh_destroy(mesh);
 }
 
+// Cells that were removed are in no frame, nor are their values; the others say who they are.
+static void test_removed(void **state) {
+    (void)state;
+    sn_mesh *mesh = make_mesh();
+    const size_t cells = (size_t)mesh->cell_count;
+    double *stress = random_values(6 * cells, 5), *removed = calloc(cells, sizeof *removed);
+    double *left = malloc(6 * cells * sizeof *left);
+    int *nodes = malloc(4 * cells * sizeof *nodes), *names = malloc(cells * sizeof *names);
+    const sn_field fields[] = {{"stress", "Pa", SN_ON_CELLS, 6, stress},
+                               {"removed", "1", SN_ON_CELLS, 1, removed}};
+    sn_vtu *vtu;
+    CHECK_OK(sn_vtu_create(scratch, "cut", mesh, &vtu));
+    for (int f = 0; f < 3; f++) { // none, every third, all
+        size_t count = 0;
+        for (size_t e = 0; e < cells; e++) {
+            removed[e] = f == 2 || (f == 1 && e % 3 == 1);
+            if (removed[e] != 0) continue;
+            memcpy(nodes + 4 * count, mesh->cell + 4 * e, 4 * sizeof *nodes);
+            memcpy(left + 6 * count, stress + 6 * e, 6 * sizeof *left);
+            names[count++] = (int)e;
+        }
+        CHECK_OK(sn_vtu_frame(vtu, &(sn_frame){f, 2, fields}));
+        char name[32], head[64];
+        snprintf(name, sizeof name, "cut_%04d.vtu", f);
+        char *text = read_file(name);
+        assert_true(is_well_formed(text, true));
+        snprintf(head, sizeof head, "NumberOfCells=\"%zu\"", count);
+        assert_non_null(strstr(text, head));
+        check_array(text, "connectivity", nodes, 4 * count * sizeof *nodes);
+        check_array(text, "cell", names, count * sizeof *names);
+        check_array(text, "stress", left, 6 * count * sizeof *left);
+        assert_null(strstr(text, "\"removed\""));
+        free(text);
+    }
+    sn_vtu_destroy(vtu);
+    free(stress);
+    free(removed);
+    free(left);
+    free(nodes);
+    free(names);
+    sn_mesh_destroy(mesh);
+}
+
 static void test_refused(void **state) {
     (void)state;
     sn_mesh *mesh = make_mesh();
@@ -167,6 +210,7 @@ static void test_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_frames),
+        cmocka_unit_test(test_removed),
         cmocka_unit_test(test_refused),
     };
     return cmocka_run_group_tests(tests, scratch_open, scratch_close);

@@ -322,6 +322,8 @@ static void drive(const body *b, unsigned char *bytes, size_t size_of_state) {
         sn_state_push(b->net, b->s, 20, (const double[]){1e-5 * n, 0, 0});
         if (n == 100) sn_state_grasp(b->net, b->s, 0, 0, NULL);
         if (n == 150) sn_state_release(b->net, b->s, 0);
+        const int gone[3] = {n, n + 1, n / 2};
+        if (n == 60 || n == 95 || n == 170) sn_state_cut(b->net, b->s, 3, gone, NULL);
         run_for(b, 1e-3);
         if (n % 50 != 49) continue;
         sn_state_save(b->net, b->s, bytes);
@@ -333,13 +335,15 @@ static void drive(const body *b, unsigned char *bytes, size_t size_of_state) {
 // allocator that counts.
 static void steps_call_nothing(void **state) {
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 6; k++) {
+        static const sn_rung rungs[] = {SN_RUNG_COUPLED, SN_RUNG_CENTRAL, SN_RUNG_SMOOTHED};
         sn_tissue t = demiray(2e3, 4, 4e4);
         t.memory = prony(0.3, 0.01, 0.2, 0.2);
         sn_case *c = make_block(size, cells, SN_PATTERN_MIRRORED, &t);
         c->springs.precision = k % 2 ? SN_SINGLE : SN_DOUBLE;
-        c->springs.rung = k / 2 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
+        c->springs.rung = rungs[k / 2];
         c->springs.damping = 20;
+        c->springs.cuttable = true;
         add_support(c, "bottom", "xyz");
         add_load(c, SN_LOAD_PRESSURE, "right", 0, 0, 0, 0)->pressure = 50;
         add_tool(c, "tool", 0.01, (const double[]){0.02, 0.01, 0.0301}, (const double[]){0, 0, 0},

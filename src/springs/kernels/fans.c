@@ -58,6 +58,13 @@ SN_INLINE void ring_load(const fan_block *c, int k, int i, const wide E[3], ring
     }
 }
 
+// x of a cell that is there; present: Nullable row of the cells after ring node k, 0 where removed
+SN_INLINE wide if_there(const real *present, int k, int i, wide x) {
+    const wide none = wide_set(0);
+    if (!present) return x;
+    return wide_select(wide_less(none, wide_load(present + k * WIDTH + i)), x, none);
+}
+
 // a quarter of V (J - 1)
 SN_INLINE wide cell_growth(const wide de[3], const ring_node *one, const ring_node *two) {
     wide c[3];
@@ -66,7 +73,7 @@ SN_INLINE wide cell_growth(const wide de[3], const ring_node *one, const ring_no
 }
 
 // growth of the members of the fans of one group of lanes
-SN_INLINE void grow(fan_block *c, int ring, bool closed, int i) {
+SN_INLINE void grow(fan_block *c, const real *present, int ring, bool closed, int i) {
     wide de[3], E[3], all, carry, first;
     ring_node one, two, start;
     load3(c->d, i, de);
@@ -76,7 +83,7 @@ SN_INLINE void grow(fan_block *c, int ring, bool closed, int i) {
     all = carry = first = wide_set(0);
     for (int k = 0; k + 1 < ring; k++) {
         ring_load(c, k + 1, i, E, &two);
-        wide g = cell_growth(de, &one, &two);
+        wide g = if_there(present, k, i, cell_growth(de, &one, &two));
         all = all + g;
         if (k == 0) first = g;
         wide_store(c->f + (2 + k) * WIDTH + i, carry + g);
@@ -84,7 +91,7 @@ SN_INLINE void grow(fan_block *c, int ring, bool closed, int i) {
         one = two;
     }
     if (closed) {
-        wide g = cell_growth(de, &one, &start);
+        wide g = if_there(present, ring - 1, i, cell_growth(de, &one, &start));
         all = all + g;
         wide_store(c->f + 2 * WIDTH + i, first + g);
         carry = carry + g;
@@ -101,7 +108,9 @@ SN_INLINE void grow_blocks(const sn_tile *tile, const tile_nodes *nodes, int rin
     for (int b = 0; b < tile->blocks; b++) {
         const uint16_t *corner = tile->corner + b * corners * WIDTH;
         block_spokes(nodes, corner, corners - 1, layout, c.d, c.A, NULL);
-        for (int i = 0; i < WIDTH; i += SN_LANES) grow(&c, ring, closed, i);
+        const real *present =
+            tile->present ? (const real *)tile->present + b * corners * WIDTH : NULL;
+        for (int i = 0; i < WIDTH; i += SN_LANES) grow(&c, present, ring, closed, i);
         for (int k = 0; k < corners * WIDTH; k += 4)
             for (int j = k; j < k + 4; j++) sum[corner[j]] += c.f[j];
     }
@@ -170,7 +179,7 @@ SN_INLINE void store3(real *to, int i, const wide x[3]) {
 }
 
 // forces on the members of the fans of one group of lanes
-SN_INLINE void push(fan_block *c, int ring, bool closed, real modulus, int i) {
+SN_INLINE void push(fan_block *c, const real *present, int ring, bool closed, real modulus, int i) {
     wide e[3], A[3], q[3], sum[3], carry[3], first[3], on_one[3], on_two[3];
     pressed_node one, two, start;
     load3(c->d, i, e);
@@ -185,6 +194,7 @@ SN_INLINE void push(fan_block *c, int ring, bool closed, real modulus, int i) {
         pressed_load(c, k + 1, i, e, &two);
         wide p = cell_pressure(c, k, k + 1, i);
         if (modulus > 0) p = p + upright_pressure(c, modulus, k, k + 1, i, e, &one, &two);
+        p = if_there(present, k, i, p);
         push_cell(p, &one, &two, q, on_one, on_two);
         for (int j = 0; j < 3; j++) {
             on_one[j] = carry[j] - on_one[j];
@@ -198,6 +208,7 @@ SN_INLINE void push(fan_block *c, int ring, bool closed, real modulus, int i) {
     if (closed) {
         wide p = cell_pressure(c, ring - 1, 0, i);
         if (modulus > 0) p = p + upright_pressure(c, modulus, ring - 1, 0, i, e, &one, &start);
+        p = if_there(present, ring - 1, i, p);
         push_cell(p, &one, &start, q, on_one, on_two);
         for (int j = 0; j < 3; j++) {
             first[j] = first[j] + on_two[j];
@@ -219,7 +230,9 @@ SN_INLINE void push_blocks(const sn_tile *tile, const tile_nodes *nodes, int rin
         const uint16_t *corner = tile->corner + b * corners * WIDTH;
         block_pressure(nodes, corner, WIDTH, c.p);
         block_spokes(nodes, corner, corners - 1, layout, c.d, c.A, c.p + WIDTH);
-        for (int i = 0; i < WIDTH; i += SN_LANES) push(&c, ring, closed, modulus, i);
+        const real *present =
+            tile->present ? (const real *)tile->present + b * corners * WIDTH : NULL;
+        for (int i = 0; i < WIDTH; i += SN_LANES) push(&c, present, ring, closed, modulus, i);
         for (int k = 0; k < corners; k++)
             for (int i = 0; i < WIDTH; i += 4) {
                 const real *from = c.f + 3 * k * WIDTH + i;
