@@ -10,7 +10,7 @@
 
 #include "springs/net.h"
 
-#define SNAPSHOT_VERSION 1u
+#define SNAPSHOT_VERSION 2u
 #define SNAPSHOT_ORDER 0x01020304u
 
 /// What stands before the pieces.
@@ -45,14 +45,19 @@ static uint64_t mix_history(uint64_t hash, const sn_history *h) {
 }
 
 static uint64_t mix_region(uint64_t hash, const sn_net_region *g) {
-    const sn_exponentials *e = &g->memory;
-    const double numbers[] = {g->density,    g->shear, g->bulk,    g->exponent,
-                              g->stiffening, e->g_inf, e->viscous, (double)e->terms};
+    const double numbers[] = {g->density,  g->shear,      g->bulk,
+                              g->exponent, g->stiffening, (double)g->splits};
     hash = mix(hash, g->tissue.law->name, strlen(g->tissue.law->name));
     hash = mix(hash, g->tissue.value, sizeof g->tissue.value);
     hash = mix(hash, numbers, sizeof numbers);
-    hash = mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
-    return mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    for (int p = 0; p < (g->tissue.branched ? SN_PARTS : 1); p++) {
+        const sn_exponentials *e = sn_region_memory(g, (sn_part)p);
+        const double heads[] = {e->g_inf, e->viscous, (double)e->terms};
+        hash = mix(hash, heads, sizeof heads);
+        hash = mix(hash, e->g, (size_t)e->terms * sizeof *e->g);
+        hash = mix(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    }
+    return hash;
 }
 
 static uint64_t mix_drive(uint64_t hash, const sn_net *net) {
