@@ -28,7 +28,7 @@ SN_API void sn_net_destroy(sn_net *net); // NULL is allowed
 SN_API int sn_net_node_count(const sn_net *net);
 SN_API int sn_net_spring_count(const sn_net *net);
 SN_API int sn_net_cell_count(const sn_net *net);
-/// The exponentials in use, of the tissue of region 0.
+/// The exponentials in use, of the tissue of region 0: of its deviatoric part where branched.
 SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
 /// The step, seconds: explicit 0.9 of the stability limit at rest, implicit as chosen, or the
 /// case's own.
@@ -89,9 +89,9 @@ SN_API bool sn_state_is_cut(const sn_net *net, const sn_state *state, int cell);
 SN_API bool sn_state_is_loose(const sn_net *net, const sn_state *state, int node);
 /// Goes on with another net of the same mesh, tissues with other constants, other loads or other
 /// settings: what a state carries over is place, velocity, time, tools and contact. Memory is kept
-/// where all regions have as many exponentials as before; else it begins anew, as if the present
-/// stress had come on at once. Forces and the limit of the step are those of the new net. Nets are
-/// constant, so the new one can be built while the old one runs.
+/// where all regions have as many exponentials as before, part by part; else it begins anew, as if
+/// the present stress had come on at once. Forces and the limit of the step are those of the new
+/// net. Nets are constant, so the new one can be built while the old one runs.
 /// @return SN_OK, SN_E_DEFINITION (other mesh, rung, precision, tools or number of loads: nothing
 /// changed), SN_E_MEMORY.
 SN_API sn_status sn_state_move(const sn_net *from, const sn_net *to, sn_state *state);

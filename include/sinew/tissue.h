@@ -51,6 +51,9 @@ SN_API const sn_memory *sn_tissue_memory(const sn_tissue *tissue, sn_part part);
 /// range, and every one has the whole's bulk modulus.
 /// @param part    (2). @return their number, 1 or 2.
 SN_API int sn_tissue_split(const sn_tissue *tissue, sn_tissue part[2]);
+/// The same where matrix and fibres are wanted apart whatever their memories.
+/// @return 2, or 1 where the law's fibres have no energy of their own.
+SN_API int sn_tissue_split_fibres(const sn_tissue *tissue, sn_tissue part[2]);
 /// Converts constants that were given for the long term (G(infinity) = 1, Prony weights over the
 /// long-term modulus, as FEBio and ArtiSynth have it) to ours (G(0) = 1): stresses are multiplied
 /// by G(0)/G(infinity), Prony weights divided by it; each part by its own where branched.

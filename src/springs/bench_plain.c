@@ -214,7 +214,7 @@ static void copy_cells(const sn_net *net, sn_plain *p) {
 
 static void set_numbers(const sn_net *net, sn_plain *p) {
     const sn_net_region *g = &net->region[0];
-    sn_factors factors;
+    sn_recursion factors;
     p->nodes = net->nodes;
     p->coupled = net->rung == SN_RUNG_COUPLED;
     p->smoothed = net->rung == SN_RUNG_SMOOTHED;

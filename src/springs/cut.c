@@ -205,10 +205,10 @@ bool sn_state_due_cut(const sn_net *net, sn_state *s, int *count, const int **ce
 //---- cutting -------------------------------------------------------------------------------------
 
 // forgets a place: all its numbers in the store
-static void forget(const sn_net_region *g, sn_state *s, size_t first, size_t components,
-                   size_t item) {
-    const size_t branches = (size_t)g->branches, n = components * SN_BLOCK;
-    const size_t at = first + item / SN_BLOCK * (1 + branches) * n + item % SN_BLOCK;
+static void forget(const sn_net_region *g, sn_state *s, const sn_net_store *store, size_t item) {
+    const size_t branches = (size_t)sn_region_branches(g, store->part);
+    const size_t components = (size_t)store->components, n = components * SN_BLOCK;
+    const size_t at = store->first + item / SN_BLOCK * (1 + branches) * n + item % SN_BLOCK;
     for (size_t k = 0; branches > 0 && k < (1 + branches) * components; k++)
         sn_real_put(s->precision, s->store, at + k * SN_BLOCK, 0.0);
 }
@@ -220,25 +220,27 @@ static double edge_volume(const sn_net *net, const double *volume, int edge) {
     return sum;
 }
 
+// what is left of item k of a region: its stiffness or volume
+static double left_of(const sn_net *net, const sn_net_region *g, const sn_parts *parts, int kind,
+                      int k) {
+    const double *stiffness = parts->stiffness[SN_DOUBLE];
+    if (kind == SN_STORE_SPRING) return stiffness[g->spring_block * SN_BLOCK + k];
+    if (kind == SN_STORE_POINT) return parts->point_volume[g->point_block * SN_BLOCK + k];
+    const int place = sn_region_law_block(net, g) * SN_BLOCK + k;
+    const double *volume = parts->volume[SN_DOUBLE];
+    return net->rung == SN_RUNG_SMOOTHED ? edge_volume(net, volume, place) : volume[place];
+}
+
 // what is gone forgets
 static void forget_all(const sn_net *net, sn_state *s) {
-    const sn_parts *parts = &s->cut->parts;
-    const double *volume = parts->volume[SN_DOUBLE], *stiffness = parts->stiffness[SN_DOUBLE];
-    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *g = &net->region[r];
-        const int first = sn_region_law_block(net, g) * SN_BLOCK;
-        for (int k = 0; k < sn_region_law_blocks(net, g) * SN_BLOCK; k++) {
-            const double left = net->rung == SN_RUNG_SMOOTHED ? edge_volume(net, volume, first + k)
-                                                              : volume[first + k];
-            if (!(left > 0)) forget(g, s, g->cell_store, components, (size_t)k);
-        }
-        for (int k = 0; k < g->spring_blocks * SN_BLOCK; k++)
-            if (!(stiffness[g->spring_block * SN_BLOCK + k] > 0))
-                forget(g, s, g->spring_store, 1, (size_t)k);
-        for (int k = 0; k < g->point_blocks * SN_BLOCK; k++)
-            if (!(parts->point_volume[g->point_block * SN_BLOCK + k] > 0))
-                forget(g, s, g->point_store, 1, (size_t)k);
+        sn_net_store store[SN_STORES];
+        sn_region_stores(net, g, store);
+        for (int kind = 0; kind < SN_STORES; kind++)
+            for (int k = 0; k < store[kind].blocks * SN_BLOCK; k++)
+                if (!(left_of(net, g, &s->cut->parts, kind, k) > 0))
+                    forget(g, s, &store[kind], (size_t)k);
     }
 }
 
@@ -246,9 +248,12 @@ static void forget_all(const sn_net *net, sn_state *s) {
 // step starts from
 static void find_forces(const sn_net *net, sn_state *s) {
     for (int r = 0; r < net->region_count; r++) {
-        sn_factors *f = &s->factors[r];
-        *f = (sn_factors){.alpha = net->region[r].memory.g_inf};
-        for (int k = 0; k < net->region[r].branches; k++) f->decay[k] = 1.0;
+        const sn_net_region *g = &net->region[r];
+        for (int p = 0; p < SN_PARTS; p++) {
+            sn_recursion *f = &s->factors[r].part[p];
+            *f = (sn_recursion){.alpha = sn_region_memory(g, (sn_part)p)->g_inf};
+            for (int k = 0; k < sn_region_branches(g, (sn_part)p); k++) f->decay[k] = 1.0;
+        }
     }
     s->factors_step = 0;
     sn_state_find_forces(net, s);

@@ -8,8 +8,10 @@
 // with R' = H e' - g q/tau (e - e_v): the work done on the branch less a loss that is never below
 // zero where T rises with e. Linear: R = H^2 / (2 g k). Springs and volume stresses are taken so,
 // without approximation; six components of a cell (or a smoothed edge) by the linear form with the
-// tangent D of the law (and of a volume term) at the present strain, R = g/2 q . D^-1 q. A viscous
-// part stores nothing.
+// tangent D of the law (and of a volume term) at the present strain, R = g/2 q . D^-1 q. Fibres
+// with a memory of their own resist only along themselves, and not at all while slack, so that
+// their D has no inverse: they take that of matrix and fibres together, which is less than theirs
+// would be where they are soft. A viscous part stores nothing.
 #include <math.h>
 
 #include "springs/net.h"
@@ -21,6 +23,16 @@ typedef struct branches {
     size_t first, count; ///< in the store: first number, numbers of a block and branch
     size_t all;          ///< branches in the store, the viscous part too
 } branches;
+
+static branches branches_of(const sn_net *net, const sn_net_region *region, const sn_moment *m,
+                            int kind) {
+    sn_net_store store[SN_STORES];
+    sn_region_stores(net, region, store);
+    const sn_net_store *s = &store[kind];
+    return (branches){m, sn_region_memory(region, s->part), s->first,
+                      (size_t)s->components * SN_BLOCK,
+                      (size_t)sn_region_branches(region, s->part)};
+}
 
 // T for k = 0, else H of branch k - 1, of number i of a block
 static double stored(const branches *b, size_t block, size_t k, size_t i) {
@@ -51,8 +63,7 @@ static double potential(double B, double lambda) {
 }
 
 static double of_springs(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
-    const branches b = {m, &region->memory, region->spring_store, SN_BLOCK,
-                        (size_t)region->branches};
+    const branches b = branches_of(net, region, m, SN_STORE_SPRING);
     const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
     const double *inverse = net->data[SN_DOUBLE].inverse, B = region->exponent;
     double sum = 0;
@@ -75,8 +86,7 @@ static double of_springs(const sn_net *net, const sn_net_region *region, const s
 //---- volume points and cells ---------------------------------------------------------------------
 
 static double of_points(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
-    const branches b = {m, &region->memory, region->point_store, SN_BLOCK,
-                        (size_t)region->branches};
+    const branches b = branches_of(net, region, m, SN_STORE_POINT);
     const double *volume = sn_parts_point_volume(net, m->parts);
     double sum = 0;
     for (size_t n = 0; region->bulk > 0 && n < (size_t)region->point_blocks * SN_BLOCK; n++) {
@@ -120,31 +130,56 @@ static double compliance(const double D[21], double bulk, const double q[6]) {
     return fmax(sum, 0.0);
 }
 
+// what one branch of six components holds per volume, over g/2
+static double twice_held(const sn_net_region *region, const branches *b, const double D[21], int k,
+                         size_t n) {
+    const double g = b->memory->g[k];
+    double q[6];
+    for (size_t c = 0; c < 6; c++)
+        q[c] = stored(b, n / SN_BLOCK, (size_t)k + 1, c * SN_BLOCK + n % SN_BLOCK) / g;
+    return compliance(D, region->bulk + region->shear, q);
+}
+
+// number i of a place
+static double twice_held_volume(const sn_net_region *region, const branches *b, int k, size_t n,
+                                size_t i) {
+    double p =
+        stored(b, n / SN_BLOCK, (size_t)k + 1, i * SN_BLOCK + n % SN_BLOCK) / b->memory->g[k];
+    return region->bulk > 0 ? p * p / region->bulk : 0.0;
+}
+
+// D of the matrix, then of matrix and fibres
+static void tangents(const sn_net_region *region, const double E[6], double D[2][21]) {
+    double S[6], fibres[21];
+    for (int k = 0; k < region->splits; k++) {
+        const sn_tissue *t = &region->split[k];
+        sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, k ? fibres : D[0]);
+    }
+    for (int i = 0; i < 21 && region->splits > 1; i++) D[1][i] = D[0][i] + fibres[i];
+}
+
 static double of_cells(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
-    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
-    const branches b = {m, &region->memory, region->cell_store, components * SN_BLOCK,
-                        (size_t)region->branches};
-    const sn_tissue *t = &region->tissue;
+    static const int kind[2] = {SN_STORE_CELL, SN_STORE_FIBRE};
+    const branches volume = branches_of(net, region, m, SN_STORE_BULK);
+    const int first = sn_net_first_split(net);
+    branches b[2];
     double sum = 0;
+    for (int k = first; k < region->splits; k++) b[k] = branches_of(net, region, m, kind[k]);
     for (size_t n = 0; n < (size_t)sn_region_law_blocks(net, region) * SN_BLOCK; n++) {
         const size_t slot = (size_t)sn_region_law_block(net, region) * SN_BLOCK + n;
-        const size_t block = n / SN_BLOCK, lane = n % SN_BLOCK;
-        double E[6], S[6], D[21];
+        double E[6], D[2][21];
         const double V = sn_net_law_strain(net, m, (int)slot, E);
         if (!(V > 0)) continue;
-        sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, D);
-        for (int k = 0; k < b.memory->terms; k++) {
-            const double g = b.memory->g[k];
-            double q[6], twice;
-            for (size_t c = 0; c < 6; c++)
-                q[c] = stored(&b, block, (size_t)k + 1, c * SN_BLOCK + lane) / g;
-            twice = compliance(D, region->bulk + region->shear, q);
-            if (components == 7 && region->bulk > 0) {
-                double p = stored(&b, block, (size_t)k + 1, 6 * SN_BLOCK + lane) / g;
-                twice += p * p / region->bulk;
+        tangents(region, E, D);
+        for (int k = first; k < region->splits; k++)
+            for (int j = 0; j < b[k].memory->terms; j++) {
+                double twice = twice_held(region, &b[k], D[k], j, n);
+                if (b[k].count == 7 * SN_BLOCK) twice += twice_held_volume(region, &b[k], j, n, 6);
+                sum += 0.5 * b[k].memory->g[j] * V * twice;
             }
-            sum += 0.5 * g * V * twice;
-        }
+        if (!region->tissue.branched || net->volume_mode != SN_VOLUME_CELL) continue;
+        for (int j = 0; j < volume.memory->terms; j++)
+            sum += 0.5 * volume.memory->g[j] * V * twice_held_volume(region, &volume, j, n, 0);
     }
     return sum;
 }
@@ -153,9 +188,9 @@ double sn_net_memory_energy(const sn_net *net, const sn_moment *m) {
     double sum = 0;
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *region = &net->region[r];
-        if (region->memory.terms == 0) continue;
+        if (!region->tissue.branched && region->memory.terms == 0) continue;
         if (net->rung == SN_RUNG_CENTRAL) sum += of_springs(net, region, m);
-        if (net->rung != SN_RUNG_CENTRAL) sum += of_cells(net, region, m);
+        sum += of_cells(net, region, m);
         if (net->volume) sum += of_points(net, region, m);
     }
     return sum;

@@ -13,14 +13,20 @@
 
 #include "springs/net.h"
 
-enum { EDGE_NUMBERS = 13 };
+/// Energy of the instantaneous law, W + U: all of it, summed as it comes, and its parts.
+typedef struct energies {
+    double all, part[SN_PARTS];
+} energies;
+
+enum { EDGE_ENERGIES = 1 + SN_PARTS, EDGE_NUMBERS = 12 + EDGE_ENERGIES };
 
 struct sn_fields {
     double *displacement, *velocity, *pressure; ///< nodes of the mesh
     double *strain, *stress, *energy;           ///< cells of the mesh
+    double *held;                               ///< energy of the equilibrium part
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
-    double *edge;    ///< strain, stress, energy of smoothed edges: 13 each
+    double *edge;    ///< strain, stress, energies of smoothed edges: EDGE_NUMBERS each
     double *removed; ///< NULL: nothing can be removed; 1 of cells that were
 };
 
@@ -36,11 +42,13 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
     f->strain = sn_alloc(cells * 6, sizeof(double));
     f->stress = sn_alloc(cells * 6, sizeof(double));
     f->energy = sn_alloc(cells, sizeof(double));
+    f->held = sn_alloc(cells, sizeof(double));
     f->growth = sn_alloc((size_t)net->point_blocks * SN_BLOCK, sizeof(double));
     f->edge = sn_alloc((size_t)net->edge_blocks * SN_BLOCK * EDGE_NUMBERS, sizeof(double));
     if (net->cuttable) f->removed = sn_alloc(cells, sizeof(double));
     if ((net->cuttable && !f->removed) || !f->edge || !f->displacement || !f->velocity ||
-        !f->pressure || !f->around || !f->strain || !f->stress || !f->energy || !f->growth) {
+        !f->pressure || !f->around || !f->strain || !f->stress || !f->energy || !f->held ||
+        !f->growth) {
         sn_fields_destroy(f);
         return SN_E_MEMORY;
     }
@@ -51,7 +59,7 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
 void sn_fields_destroy(sn_fields *f) {
     if (!f) return;
     void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain,
-                   f->stress,       f->energy,   f->growth,   f->edge,   f->removed};
+                   f->stress,       f->energy,   f->growth,   f->edge,   f->held,   f->removed};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(f);
 }
@@ -119,7 +127,7 @@ double sn_net_law_strain(const sn_net *net, const sn_moment *m, int slot, double
     else
         find_shape(net, m, slot, &c);
     green_strain(c.F, E);
-    return c.V;
+    return net->rung == SN_RUNG_SMOOTHED && net->edge_filling[slot] ? 0.0 : c.V;
 }
 
 // from material axes to space: Q^T E Q
@@ -142,13 +150,35 @@ static void add_cauchy(const cell_shape *c, const double S[6], double *stress) {
                     c->F[3 * pair[k][0] + i] * S[sym[i][j]] * c->F[3 * pair[k][1] + j] / c->J;
 }
 
-// number i of component k of block b with memory, from the store
-static double remembered(const sn_net_region *region, const sn_moment *m, size_t first,
-                         size_t block, size_t n, size_t i) {
-    const size_t at = first + block * (1 + (size_t)region->branches) * n + i;
-    double sum = region->memory.g_inf * sn_real_at(m->precision, m->store, at);
-    for (size_t k = 1; k <= (size_t)region->branches; k++)
-        sum += sn_real_at(m->precision, m->store, at + k * n);
+static void add_energy(energies *e, sn_part part, double x) {
+    e->all += x;
+    e->part[part] += x;
+}
+
+/// What of one kind of item is in the store.
+typedef struct recalled {
+    const sn_moment *moment;
+    size_t first, count, branches; ///< count: numbers of a block and branch
+    double g_inf;
+} recalled;
+
+static recalled recall(const sn_net *net, const sn_net_region *region, const sn_moment *m,
+                       int kind) {
+    sn_net_store store[SN_STORES];
+    sn_region_stores(net, region, store);
+    const sn_net_store *s = &store[kind];
+    return (recalled){m, s->first, (size_t)s->components * SN_BLOCK,
+                      (size_t)sn_region_branches(region, s->part),
+                      sn_region_memory(region, s->part)->g_inf};
+}
+
+// number i of a block with memory, from the store; `T` where nothing is remembered
+static double remembered(const recalled *r, size_t block, size_t i, double T) {
+    const size_t at = r->first + block * (1 + r->branches) * r->count + i;
+    if (r->branches == 0) return T;
+    double sum = r->g_inf * sn_real_at(r->moment->precision, r->moment->store, at);
+    for (size_t k = 1; k <= r->branches; k++)
+        sum += sn_real_at(r->moment->precision, r->moment->store, at + k * r->count);
     return sum;
 }
 
@@ -156,23 +186,26 @@ static double remembered(const sn_net_region *region, const sn_moment *m, size_t
 
 // of a cell, or of a smoothed edge
 static void solid_place(const sn_net *net, const sn_net_region *region, const sn_moment *m,
-                        int slot, const cell_shape *c, double *stress, double *energy) {
-    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6, n = components * SN_BLOCK;
+                        int slot, const cell_shape *c, double *stress, energies *energy) {
+    static const int kind[2] = {SN_STORE_CELL, SN_STORE_FIBRE};
     const size_t block = (size_t)(slot / SN_BLOCK - sn_region_law_block(net, region));
     const size_t lane = (size_t)slot % SN_BLOCK;
-    const sn_tissue *t = &region->tissue;
-    double E[6], S[6], p = region->bulk * (c->J - 1.0);
+    double E[6], S[6], W, p = region->bulk * (c->J - 1.0);
     green_strain(c->F, E);
-    sn_law_solid(t->law, t->value, t->terms, 1, E, energy, S, NULL);
-    if (net->volume_mode == SN_VOLUME_CELL) *energy += 0.5 * p * (c->J - 1.0);
-    if (region->branches > 0) {
-        for (size_t k = 0; k < 6; k++)
-            S[k] = remembered(region, m, region->cell_store, block, n, k * SN_BLOCK + lane);
-        if (components == 7)
-            p = remembered(region, m, region->cell_store, block, n, 6 * SN_BLOCK + lane);
+    for (int n = sn_net_first_split(net); n < region->splits; n++) {
+        const sn_tissue *t = &region->split[n];
+        const recalled r = recall(net, region, m, kind[n]);
+        sn_law_solid(t->law, t->value, t->terms, 1, E, &W, S, NULL);
+        add_energy(energy, sn_split_part(n), W);
+        for (size_t k = 0; k < 6; k++) S[k] = remembered(&r, block, k * SN_BLOCK + lane, S[k]);
+        add_cauchy(c, S, stress);
     }
-    add_cauchy(c, S, stress);
-    for (int k = 0; k < 3 && net->volume_mode == SN_VOLUME_CELL; k++) stress[k] += p;
+    if (net->volume_mode != SN_VOLUME_CELL) return;
+    const bool apart = region->tissue.branched;
+    const recalled r = recall(net, region, m, apart ? SN_STORE_BULK : SN_STORE_CELL);
+    add_energy(energy, SN_PART_VOLUMETRIC, 0.5 * p * (c->J - 1.0));
+    p = remembered(&r, block, (apart ? 0u : 6u) * SN_BLOCK + lane, p);
+    for (int k = 0; k < 3; k++) stress[k] += p;
 }
 
 static void find_edges(const sn_net *net, sn_fields *f, const sn_moment *m) {
@@ -186,15 +219,18 @@ static void find_edges(const sn_net *net, sn_fields *f, const sn_moment *m) {
             find_edge_shape(net, m, e, &c);
             green_strain(c.F, E);
             turn_back(net, E, to);
-            memset(to + 6, 0, 7 * sizeof *to);
-            solid_place(net, region, m, e, &c, to + 6, to + 12);
+            energies energy = {0};
+            memset(to + 6, 0, 6 * sizeof *to);
+            solid_place(net, region, m, e, &c, to + 6, &energy);
+            to[12] = energy.all;
+            memcpy(to + 13, energy.part, sizeof energy.part);
         }
     }
 }
 
 // mean of the six edges; replaces the strain of the cell
 static void smoothed_cell(const sn_net *net, const sn_fields *f, int slot, double *strain,
-                          double *stress, double *energy) {
+                          double *stress, energies *energy) {
     memset(strain, 0, 6 * sizeof *strain);
     for (int k = 0; k < 6; k++) {
         const int e = net->cell_edge[(slot / SN_BLOCK * 6 + k) * SN_BLOCK + slot % SN_BLOCK];
@@ -203,15 +239,17 @@ static void smoothed_cell(const sn_net *net, const sn_fields *f, int slot, doubl
             strain[i] += from[i] / 6.0;
             stress[i] += from[6 + i] / 6.0;
         }
-        *energy += from[12] / 6.0;
+        energy->all += from[12] / 6.0;
+        for (int p = 0; p < SN_PARTS; p++) energy->part[p] += from[13 + p] / 6.0;
     }
 }
 
 static void central_cell(const sn_net *net, const sn_net_region *region, const sn_moment *m,
-                         int slot, const cell_shape *c, double *stress, double *energy) {
+                         int slot, const cell_shape *c, double *stress, energies *energy) {
     const sn_net_data *data = &net->data[SN_DOUBLE];
     const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
     const double *volume = sn_parts_spring_volume(net, m->parts);
+    const recalled r = recall(net, region, m, SN_STORE_SPRING);
     for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
         const int s = net->spring_share[q];
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
@@ -234,24 +272,22 @@ static void central_cell(const sn_net *net, const sn_net_region *region, const s
             t = fabs(B * y) < 1e-12 ? y : expm1(B * y) / B;
             phi = straight ? y * y * (0.5 + B * y / 6.0) : (t - y) / B;
         }
-        if (region->branches > 0)
-            t = remembered(region, m, region->spring_store, block - (size_t)region->spring_block,
-                           SN_BLOCK, lane);
+        t = remembered(&r, block - (size_t)region->spring_block, lane, t);
         for (int k = 0; k < 6; k++)
             stress[k] += part * t / lambda * x[pair[k][0]] * x[pair[k][1]] / c->J;
-        *energy += part * phi / inverse;
+        add_energy(energy, SN_PART_DEVIATORIC, part * phi / inverse);
     }
 }
 
 // mean over the corners of nodal pressure and of the energy of the volume points
 static void nodal_volume(const sn_net *net, const sn_net_region *region, const sn_fields *f,
-                         const sn_moment *m, int slot, double *stress, double *energy) {
+                         const sn_moment *m, int slot, double *stress, energies *energy) {
     const int *point = net->cell_point + (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
     for (int a = 0; a < 4; a++) {
         const int p = point[a * SN_BLOCK];
         double pressure = sn_real_at(m->precision, m->pressure, (size_t)p);
         for (int k = 0; k < 3; k++) stress[k] += 0.25 * pressure;
-        *energy += 0.125 * region->bulk * f->growth[p] * f->growth[p];
+        add_energy(energy, SN_PART_VOLUMETRIC, 0.125 * region->bulk * f->growth[p] * f->growth[p]);
     }
 }
 
@@ -289,6 +325,14 @@ static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
         }
 }
 
+static double equilibrium_part(const sn_net_region *region, const energies *e) {
+    double sum = 0;
+    if (!region->tissue.branched) return region->memory.g_inf * e->all;
+    for (int p = 0; p < SN_PARTS; p++)
+        sum += sn_region_memory(region, (sn_part)p)->g_inf * e->part[p];
+    return sum;
+}
+
 void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
     fill_nodes(net, f, m);
     find_growth(net, f, m);
@@ -301,7 +345,7 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
         double E[6], *stress = f->stress + 6 * e;
         cell_shape c;
         memset(stress, 0, 6 * sizeof *stress);
-        f->energy[e] = 0;
+        f->energy[e] = f->held[e] = 0;
         if (f->removed) f->removed[e] = m->parts && m->parts->gone[slot];
         if (m->parts && m->parts->gone[slot]) {
             memset(f->strain + 6 * e, 0, 6 * sizeof *f->strain);
@@ -310,13 +354,15 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
         find_shape(net, m, slot, &c);
         green_strain(c.F, E);
         turn_back(net, E, f->strain + 6 * e);
-        if (net->rung == SN_RUNG_COUPLED)
-            solid_place(net, region, m, slot, &c, stress, &f->energy[e]);
-        else if (net->rung == SN_RUNG_SMOOTHED)
-            smoothed_cell(net, f, slot, f->strain + 6 * e, stress, &f->energy[e]);
-        else
-            central_cell(net, region, m, slot, &c, stress, &f->energy[e]);
-        if (net->volume) nodal_volume(net, region, f, m, slot, stress, &f->energy[e]);
+        energies energy = {0};
+        if (net->rung == SN_RUNG_CENTRAL) central_cell(net, region, m, slot, &c, stress, &energy);
+        if (net->rung == SN_RUNG_SMOOTHED)
+            smoothed_cell(net, f, slot, f->strain + 6 * e, stress, &energy);
+        else if (sn_region_law_blocks(net, region) > 0)
+            solid_place(net, region, m, slot, &c, stress, &energy);
+        if (net->volume) nodal_volume(net, region, f, m, slot, stress, &energy);
+        f->energy[e] = energy.all;
+        f->held[e] = equilibrium_part(region, &energy);
         const int *corner = net->cell_node + (slot / SN_BLOCK) * 4 * SN_BLOCK + slot % SN_BLOCK;
         for (int a = 0; a < 4; a++) {
             const int node = net->node_name[corner[a * SN_BLOCK]];
@@ -350,10 +396,7 @@ double sn_fields_elastic(const sn_net *net, const sn_fields *f) {
 sn_stored sn_fields_stored(const sn_net *net, const sn_fields *f, const sn_moment *m) {
     const double *volume = net->data[SN_DOUBLE].volume;
     sn_stored sum = {.instant = sn_fields_elastic(net, f), .memory = sn_net_memory_energy(net, m)};
-    for (int e = 0; e < net->cells; e++) {
-        const int slot = net->cell_slot[e];
-        sum.elastic += region_of(net, slot)->memory.g_inf * f->energy[e] * volume[slot];
-    }
+    for (int e = 0; e < net->cells; e++) sum.elastic += f->held[e] * volume[net->cell_slot[e]];
     return sum;
 }
 

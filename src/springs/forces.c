@@ -15,18 +15,35 @@ static void *at(const void *array, sn_precision p, size_t i) {
     return array ? (char *)(uintptr_t)array + i * real_size(p) : NULL;
 }
 
-static void set_memory(const sn_net_region *region, const sn_force_call *call, size_t store,
-                       const sn_factors *factors, sn_memory_pass *m) {
-    m->mode = region->branches > 0 ? call->mode : SN_MEMORY_OFF;
+static void set_memory(const sn_net_region *region, const sn_force_call *call, sn_part part,
+                       size_t store, const sn_factors *factors, sn_memory_pass *m) {
+    const int branches = sn_region_branches(region, part);
+    m->mode = branches > 0 ? call->mode : SN_MEMORY_OFF;
     if (m->mode == SN_MEMORY_OFF) return;
-    m->branches = region->branches;
-    m->g_inf = region->memory.g_inf;
-    m->alpha = factors->alpha;
-    memcpy(m->decay, factors->decay, (size_t)region->branches * sizeof *m->decay);
-    memcpy(m->gain, factors->gain, (size_t)region->branches * sizeof *m->gain);
+    const sn_recursion *f = &factors->part[part];
+    m->branches = branches;
+    m->g_inf = sn_region_memory(region, part)->g_inf;
+    m->alpha = f->alpha;
+    memcpy(m->decay, f->decay, (size_t)branches * sizeof *m->decay);
+    memcpy(m->gain, f->gain, (size_t)branches * sizeof *m->gain);
     m->store = at(call->store, call->precision, store);
     // a history stands where its T does in the store
     m->history = at(call->history, call->precision, store);
+}
+
+// the parts of the stress of a branched tissue, each with its own memory
+static void set_parts(const sn_net_region *region, const sn_force_call *call,
+                      const sn_factors *factors, sn_cell_pass *pass) {
+    pass->apart = region->tissue.branched && call->mode != SN_MEMORY_OFF;
+    pass->fibre_value = NULL;
+    if (!pass->apart) return;
+    set_memory(region, call, SN_PART_VOLUMETRIC, region->bulk_store, factors, &pass->bulk_memory);
+    if (region->splits == 1) return;
+    pass->value = region->split[0].value;
+    pass->value_f = region->split_value_f[0];
+    pass->fibre_value = region->split[1].value;
+    pass->fibre_value_f = region->split_value_f[1];
+    set_memory(region, call, SN_PART_FIBRE, region->fibre_store, factors, &pass->fibre_memory);
 }
 
 static void set_cells(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
@@ -51,7 +68,20 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->share_start = net->edge_start;
     pass->share = net->edge_cell;
     pass->edge = net->cell_edge;
-    set_memory(region, call, region->cell_store, factors, &pass->memory);
+    set_memory(region, call, SN_PART_DEVIATORIC, region->cell_store, factors, &pass->memory);
+    if (net->rung != SN_RUNG_CENTRAL) set_parts(region, call, factors, pass);
+}
+
+// the fibres of a central net: cells that know nothing else, with the volume stress elsewhere
+static void set_fibres(const sn_net_region *region, const sn_force_call *call,
+                       const sn_factors *factors, const sn_cell_pass *cells, sn_cell_pass *pass) {
+    if (region->splits == 1) return;
+    *pass = *cells;
+    pass->value = region->split[1].value;
+    pass->value_f = region->split_value_f[1];
+    pass->volume_mode = SN_VOLUME_NONE;
+    pass->upright = 0.0;
+    set_memory(region, call, SN_PART_FIBRE, region->fibre_store, factors, &pass->memory);
 }
 
 static void set_springs(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
@@ -60,7 +90,7 @@ static void set_springs(const sn_net *net, const sn_net_region *region, const sn
     pass->exponent = region->exponent;
     pass->u = call->u;
     pass->first = region->spring_block;
-    set_memory(region, call, region->spring_store, factors, &pass->memory);
+    set_memory(region, call, SN_PART_DEVIATORIC, region->spring_store, factors, &pass->memory);
 }
 
 static void set_points(const sn_net *net, const sn_net_region *region, const sn_force_call *call,
@@ -71,7 +101,7 @@ static void set_points(const sn_net *net, const sn_net_region *region, const sn_
     pass->stiffness = sn_parts_point_stiffness(net, call->parts, call->precision);
     pass->pressure = call->out->pressure;
     pass->first = region->point_block;
-    set_memory(region, call, region->point_store, factors, &pass->memory);
+    set_memory(region, call, SN_PART_VOLUMETRIC, region->point_store, factors, &pass->memory);
 }
 
 //---- tasks ---------------------------------------------------------------------------------------
@@ -141,7 +171,7 @@ static void spring_task(void *context, int k) {
 static void cell_task(void *context, int k) {
     const force_work *w = context;
     const sn_tiles *t = &w->net->cell_tiles;
-    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    const sn_tile tile = tile_of(w, t, k, w->net->cell_part);
     w->kernels->cells(&w->call->out->cells[t->place[k].region], &tile);
 }
 
@@ -162,24 +192,37 @@ static void edge_task(void *context, int block) {
 static void share_task(void *context, int k) {
     const force_work *w = context;
     const sn_tiles *t = &w->net->cell_tiles;
-    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    const sn_tile tile = tile_of(w, t, k, w->net->cell_part);
     w->kernels->shares(&w->call->out->cells[t->place[k].region], &tile);
 }
 
 static void press_task(void *context, int k) {
     const force_work *w = context;
     const sn_tiles *t = &w->net->fan_tiles;
-    const sn_tile tile = tile_of(w, t, k, w->net->other_part);
+    const sn_tile tile = tile_of(w, t, k, w->net->fan_part);
     w->kernels->press(&w->call->out->cells[t->place[k].region], &tile);
 }
 
-// springs, then what presses on the same nodes
+static void fibre_task(void *context, int k) {
+    const force_work *w = context;
+    const sn_tiles *t = &w->net->cell_tiles;
+    const sn_tile tile = tile_of(w, t, k, w->net->cell_part);
+    if (w->call->bare)
+        memset(tile.force, 0, 4 * (size_t)tile.nodes * real_size(w->call->precision));
+    else
+        w->kernels->cells(&w->call->out->fibre[t->place[k].region], &tile);
+}
+
+// springs, then what presses on the same nodes, then fibres
 static void central_task(void *context, int k) {
     const force_work *w = context;
-    if (k < w->net->spring_tiles.count)
+    const int springs = w->net->spring_tiles.count, fans = w->net->fan_tiles.count;
+    if (k < springs)
         spring_task(context, k);
+    else if (k < springs + fans)
+        press_task(context, k - springs);
     else
-        press_task(context, k - w->net->spring_tiles.count);
+        fibre_task(context, k - springs - fans);
 }
 
 static void node_task(void *context, int chunk) {
@@ -201,6 +244,8 @@ void sn_net_forces(const sn_net *net, const sn_force_call *call) {
         const sn_net_region *region = &net->region[r];
         const sn_factors *factors = call->factors ? &call->factors[r] : NULL;
         set_cells(net, region, call, factors, &call->out->cells[r]);
+        if (net->rung == SN_RUNG_CENTRAL)
+            set_fibres(region, call, factors, &call->out->cells[r], &call->out->fibre[r]);
         set_springs(net, region, call, factors, &call->out->springs[r]);
         set_points(net, region, call, factors, &call->out->points[r]);
     }
@@ -215,7 +260,8 @@ void sn_net_forces(const sn_net *net, const sn_force_call *call) {
         sn_team_run(call->team, net->edge_blocks, edge_task, &w);
         sn_team_run(call->team, net->cell_tiles.count, share_task, &w);
     } else {
-        sn_team_run(call->team, net->spring_tiles.count + net->fan_tiles.count, central_task, &w);
+        const int tiles = net->spring_tiles.count + net->fan_tiles.count + net->cell_tiles.count;
+        sn_team_run(call->team, tiles, central_task, &w);
     }
     sn_team_run(call->team, sn_net_chunks(net), node_task, &w);
 }
@@ -230,66 +276,19 @@ sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratc
     scratch->piola = sn_alloc((size_t)net->edge_blocks * SN_BLOCK * 12, size);
     scratch->pressure = sn_alloc((size_t)net->point_blocks * SN_BLOCK, size);
     scratch->cells = sn_alloc(regions, sizeof *scratch->cells);
+    scratch->fibre = sn_alloc(regions, sizeof *scratch->fibre);
     scratch->springs = sn_alloc(regions, sizeof *scratch->springs);
     scratch->points = sn_alloc(regions, sizeof *scratch->points);
     bool all = scratch->f && scratch->part && scratch->growth && scratch->shape && scratch->piola &&
-               scratch->pressure && scratch->cells && scratch->springs && scratch->points;
+               scratch->pressure && scratch->cells && scratch->fibre && scratch->springs &&
+               scratch->points;
     return all ? SN_OK : SN_E_MEMORY;
 }
 
 void sn_scratch_destroy(sn_scratch *scratch) {
-    void *all[] = {scratch->f,        scratch->part,    scratch->growth,
-                   scratch->pressure, scratch->shape,   scratch->piola,
-                   scratch->cells,    scratch->springs, scratch->points};
+    void *all[] = {scratch->f,       scratch->part,  scratch->growth, scratch->pressure,
+                   scratch->shape,   scratch->piola, scratch->cells,  scratch->fibre,
+                   scratch->springs, scratch->points};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     *scratch = (sn_scratch){0};
-}
-
-void sn_net_factors(const sn_net *net, double h, sn_factors *factors) {
-    for (int r = 0; r < net->region_count; r++) {
-        const sn_net_region *region = &net->region[r];
-        sn_factors *f = &factors[r];
-        sn_exponentials_factors(&region->memory, h, f->decay, f->gain);
-        // the viscous part is a branch that forgets at once: viscous dT/h
-        if (region->branches > region->memory.terms) {
-            f->decay[region->memory.terms] = 0.0;
-            f->gain[region->memory.terms] = region->memory.viscous / h;
-        }
-        f->alpha = region->memory.g_inf;
-        for (int k = 0; k < region->branches; k++) f->alpha += f->gain[k];
-    }
-}
-
-// one kind of item of one region
-static void item_history(const sn_net_region *region, const sn_factors *factors, size_t first,
-                         int blocks, int n, const double *store, double *history) {
-    const size_t branches = (size_t)region->branches, count = (size_t)n;
-    double gain = 0.0;
-    for (size_t k = 0; k < branches; k++) gain += factors->gain[k];
-    for (size_t b = 0; branches > 0 && b < (size_t)blocks; b++) {
-        const double *before = store + first + b * (1 + branches) * count;
-        double *out = history + first + b * count;
-        for (size_t i = 0; i < count; i++) {
-            double sum = -gain * before[i];
-            for (size_t k = 0; k < branches; k++)
-                sum += factors->decay[k] * before[(1 + k) * count + i];
-            out[i] = sum;
-        }
-    }
-}
-
-void sn_net_history(const sn_net *net, const sn_factors *factors, const double *store,
-                    double *history) {
-    const int components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
-    for (int r = 0; r < net->region_count; r++) {
-        const sn_net_region *g = &net->region[r];
-        if (net->rung != SN_RUNG_CENTRAL)
-            item_history(g, &factors[r], g->cell_store, sn_region_law_blocks(net, g),
-                         components * SN_BLOCK, store, history);
-        else
-            item_history(g, &factors[r], g->spring_store, g->spring_blocks, SN_BLOCK, store,
-                         history);
-        if (net->volume)
-            item_history(g, &factors[r], g->point_store, g->point_blocks, SN_BLOCK, store, history);
-    }
 }

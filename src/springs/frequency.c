@@ -18,12 +18,13 @@ static double dot(const double *a, const double *b, size_t n) {
     return sum;
 }
 
-static void evaluate(const sn_net *net, const sn_frequency_call *call, const void *u) {
+static void evaluate(const sn_net *net, const sn_frequency_call *call, const void *u, bool bare) {
     sn_force_call force = {.precision = call->precision,
                            .mode = SN_MEMORY_OFF,
                            .u = u,
                            .parts = call->parts,
                            .upright = call->upright,
+                           .bare = bare,
                            .out = call->scratch,
                            .team = call->team};
     sn_net_forces(net, &force);
@@ -66,6 +67,15 @@ static void take_force(const sn_net *net, const sn_frequency_call *call, double 
     }
 }
 
+// out += factor M^-1/2 f
+static void add_force(const sn_net *net, const sn_frequency_call *call, double factor,
+                      double *out) {
+    for (int k = 0; k < 3 * net->nodes; k++)
+        out[k] +=
+            factor * net->root_inverse_mass[k] *
+            sn_real_at(call->precision, call->scratch->f, 4 * (size_t)(k / 3) + (size_t)(k % 3));
+}
+
 // out <- A y; `base` holds the force at u. The largest difference of a displacement, of an edge, is
 // the root of the rounding in either precision, or more: what it leaves is far below the safety of
 // the step.
@@ -76,8 +86,15 @@ static void apply(const sn_net *net, const sn_frequency_call *call, const double
         most = fmax(most, fabs(y[k]) * net->root_inverse_mass[k]);
     const double tiny = (call->precision == SN_SINGLE ? 1e-3 : 1e-6) * net->edge / most;
     place_trial(net, call, tiny, y);
-    evaluate(net, call, call->trial);
+    evaluate(net, call, call->trial, false);
     take_force(net, call, 1.0 / tiny, base, out);
+    if (!call->taut) return;
+    // fibres that are slack this way are taut that way
+    place_trial(net, call, -tiny, y);
+    for (int bare = 0; bare < 2; bare++) {
+        evaluate(net, call, call->trial, bare);
+        add_force(net, call, (bare ? -1.0 : 1.0) / tiny, out);
+    }
 }
 
 // largest eigenvalue of a small symmetric tridiagonal matrix and its vector, by power iteration
@@ -107,7 +124,7 @@ double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
     double *base = call->basis + (size_t)call->steps * n;
     int steps = 0;
 
-    evaluate(net, call, call->u);
+    evaluate(net, call, call->u, false);
     for (size_t k = 0; k < n; k++) {
         base[k] = sn_real_at(call->precision, call->scratch->f, 4 * (k / 3) + k % 3);
         call->basis[k] = net->root_inverse_mass[k] > 0 ? call->mode[k] : 0.0;
@@ -143,7 +160,8 @@ double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
 double sn_net_stable_step(const sn_net *net, double omega2) {
     double viscous = 0.0;
     for (int r = 0; r < net->region_count; r++)
-        viscous = fmax(viscous, net->region[r].memory.viscous);
+        for (int p = 0; p < SN_PARTS; p++)
+            viscous = fmax(viscous, sn_region_memory(&net->region[r], (sn_part)p)->viscous);
     if (!(omega2 > 0)) return INFINITY;
     // symplectic Euler with a viscous force of the velocity half a step ago
     double omega = sqrt(omega2), xi = 0.5 * viscous * omega;
@@ -183,9 +201,10 @@ sn_status sn_net_find_step(sn_net *net) {
                                         .mode = net->mode,
                                         .basis = basis,
                                         .steps = SN_LANCZOS_MAX,
-                                        .scratch = &scratch};
+                                        .scratch = &scratch,
+                                        .taut = sn_net_has_fibres(net)};
         net->omega2 = search(net, &call);
-        double longest = SN_STEP_SAFETY * sn_net_stable_step(net, net->omega2);
+        double longest = sn_net_step_safety(net) * sn_net_stable_step(net, net->omega2);
         net->step = fmin(longest, net->output_every); // nothing free to move has no limit
         if (net->asked_step > 0) net->step = fmin(net->asked_step, net->step);
     }

@@ -244,7 +244,7 @@ static void find_residual(const sn_net *net, sn_state *s, sn_implicit *im) {
 
 // a place that the laws can bear: springs may turn inside out, cells may not
 static bool try_place(const sn_net *net, sn_state *s, sn_implicit *im) {
-    if (net->rung != SN_RUNG_CENTRAL) {
+    if (net->cell_tiles.count > 0) {
         im->smallest = sn_net_smallest_ratio(net, sn_state_parts(s), s->u);
         if (!(im->smallest > 0)) return false;
     }
@@ -387,13 +387,15 @@ static void begin(const sn_net *net, sn_state *s, sn_implicit *im, double h) {
     if (h != s->factors_step) sn_net_factors(net, h, s->factors);
     s->factors_step = h;
     memcpy(im->trial, s->factors, (size_t)net->region_count * sizeof *im->trial);
-    for (int r = 0; two && r < net->region_count; r++) {
-        const sn_net_region *region = &net->region[r];
-        const int k = region->memory.terms;
-        if (region->branches <= k) continue;
-        im->trial[r].alpha += (im->g - 1.0) * im->trial[r].gain[k];
-        im->trial[r].gain[k] *= im->g;
-        im->trial[r].decay[k] = -w / (1.0 + w);
+    for (int n = 0; two && n < net->region_count * SN_PARTS; n++) {
+        const int r = n / SN_PARTS, p = n % SN_PARTS;
+        const sn_exponentials *memory = sn_region_memory(&net->region[r], (sn_part)p);
+        const int k = memory->terms;
+        sn_recursion *f = &im->trial[r].part[p];
+        if (!(memory->viscous > 0)) continue;
+        f->alpha += (im->g - 1.0) * f->gain[k];
+        f->gain[k] *= im->g;
+        f->decay[k] = -w / (1.0 + w);
     }
     if (net->store_size > 0) sn_net_history(net, im->trial, s->store, im->history);
 }

@@ -67,12 +67,14 @@ static sn_status check_motion(const sn_case *c) {
 
 static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *region) {
     const sn_tissue *t = &region->tissue;
-    if (t->law->fibres)
+    if (t->law->fibres && !t->law->fibre_constant)
         return sn_fail(SN_E_UNSUPPORTED,
-                       "tissue %s: law %s has fibres, which central springs cannot carry; use "
-                       "model coupled or smoothed",
+                       "tissue %s: law %s has fibres and matrix in one energy, which central "
+                       "springs cannot take apart; use model coupled or smoothed, or a law like "
+                       "hgo",
                        t->name, t->law->name);
-    SN_TRY(sn_spring_fit(t, &region->exponent, &region->stiffening));
+    region->splits = sn_tissue_split_fibres(t, region->split);
+    SN_TRY(sn_spring_fit(&region->split[0], &region->exponent, &region->stiffening));
     // springs bring lambda = mu, a bulk modulus of 5/3 mu
     double own = 5.0 / 3.0 * region->shear * region->stiffening;
     double missing = region->bulk - own;
@@ -109,8 +111,13 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
                            "example %g Pa (1000 times the shear modulus)",
                            t->name, 1000.0 * moduli.shear);
     }
+    region->splits = sn_tissue_split(t, region->split);
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(check_central(c, net, region));
-    for (int k = 0; k < SN_VALUES_MAX; k++) region->value_f[k] = (float)t->value[k];
+    for (int k = 0; k < SN_VALUES_MAX; k++) {
+        region->value_f[k] = (float)t->value[k];
+        for (int n = 0; n < region->splits; n++)
+            region->split_value_f[n][k] = (float)region->split[n].value[k];
+    }
     if (net->integrator != SN_INTEGRATOR_QUASI_STATIC && !isfinite(t->density))
         return sn_fail(SN_E_DEFINITION,
                        "tissue %s: no density: moving springs have inertia; give it in the tissue, "
@@ -122,16 +129,15 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
 
 static sn_status set_memory(const sn_case *c, sn_net_region *region, double t_min) {
     t_min = fmin(fmax(t_min, c->until * 1e-6), c->until * 0.1);
-    if (region->tissue.branched)
-        return sn_fail(SN_E_UNSUPPORTED,
-                       "springs: tissue %s has a branch memory: give one memory for the whole "
-                       "stress, or use the engine continuum",
-                       region->tissue.name);
-    SN_TRY(sn_memory_compress(&region->tissue.memory, t_min, c->until, c->springs.memory_tolerance,
-                              &region->memory));
-    // damping by stiffness is a viscous part of the law: it sees no rigid motion
-    if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC)
-        region->memory.viscous += c->springs.stiffness_damping;
+    sn_exponentials *const memory[SN_PARTS] = {&region->memory, &region->volumetric,
+                                               &region->fibre};
+    for (int p = 0; p < (region->tissue.branched ? SN_PARTS : 1); p++) {
+        SN_TRY(sn_memory_compress(sn_tissue_memory(&region->tissue, (sn_part)p), t_min, c->until,
+                                  c->springs.memory_tolerance, memory[p]));
+        // damping by stiffness is a viscous part of the law: it sees no rigid motion
+        if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC)
+            memory[p]->viscous += c->springs.stiffness_damping;
+    }
     region->branches = region->memory.terms + (region->memory.viscous > 0);
     return SN_OK;
 }
@@ -175,23 +181,6 @@ static sn_status set_inverse_masses(sn_net *net) {
     return SN_OK;
 }
 
-static void place_stores(sn_net *net) {
-    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
-    size_t at = 0;
-    for (int r = 0; r < net->region_count; r++) {
-        sn_net_region *g = &net->region[r];
-        const size_t numbers = g->branches > 0 ? (size_t)(1 + g->branches) * SN_BLOCK
-                                               : 0; // of one component, one block
-        g->cell_store = at;
-        at += numbers * components * (size_t)sn_region_law_blocks(net, g);
-        g->spring_store = at;
-        at += numbers * (size_t)g->spring_blocks;
-        g->point_store = at;
-        at += numbers * (size_t)g->point_blocks;
-    }
-    net->store_size = at;
-}
-
 // float copy of an array of count doubles
 static sn_status to_single(const void *from, size_t count, void **to) {
     if (!from) return SN_OK;
@@ -212,7 +201,7 @@ static sn_status copy_single(sn_net *net) {
     sn_net_data *s = &net->data[SN_SINGLE];
     const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
     const size_t springs = (size_t)net->spring_blocks * SN_BLOCK, nodes = (size_t)net->nodes * 4;
-    if (net->rung != SN_RUNG_CENTRAL) {
+    if (net->cell_tiles.count > 0) {
         SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
         SN_TRY(to_single(d->volume, cells, &s->volume));
     }
@@ -354,7 +343,7 @@ static sn_status build(const sn_case *c, sn_net *net) {
         if (net->asked_step > 0) t_min = fmin(t_min, net->asked_step);
     }
     for (int r = 0; r < net->region_count; r++) SN_TRY(set_memory(c, &net->region[r], t_min));
-    place_stores(net);
+    sn_net_place_stores(net);
     return copy_single(net);
 }
 

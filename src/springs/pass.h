@@ -103,7 +103,13 @@ typedef struct sn_cell_pass {
     double upright;        ///< Pa; 0: no cell is crushed. With SN_VOLUME_NODE
     const void *pressure;  ///< at the volume points
     int first;             ///< block of the net where the memory starts
-    sn_memory_pass memory; ///< 6 components, 7 with SN_VOLUME_CELL
+    sn_memory_pass memory; ///< 6 components, 7 with SN_VOLUME_CELL; apart: 6
+    // parts of the stress that have a memory each
+    bool apart;
+    const double *fibre_value; ///< Nullable: fibres, which `value` is without
+    const float *fibre_value_f;
+    sn_memory_pass bulk_memory;  ///< 1 component, with SN_VOLUME_CELL
+    sn_memory_pass fibre_memory; ///< 6 components
     // smoothed
     void *shape;            ///< of cells: three quads, the rows of V/6 H; V/6 in the first one
     void *piola;            ///< of edges: three quads, the rows of the first Piola-Kirchhoff stress

@@ -300,12 +300,7 @@ static void give_up(solver *v, double h) {
 // factors of a change that takes no time
 static void use_sudden_factors(solver *v) {
     use_factors(v, 1e-12 * v->net->until);
-    for (int r = 0; r < v->net->region_count; r++) { // no impulse of the viscous part
-        const sn_net_region *g = &v->net->region[r];
-        if (!(g->memory.viscous > 0)) continue;
-        v->s->factors[r].alpha -= v->s->factors[r].gain[g->memory.terms];
-        v->s->factors[r].gain[g->memory.terms] = 0;
-    }
+    sn_net_no_impulse(v->net, v->s->factors);
     sn_net_history(v->net, v->s->factors, v->s->store, v->history);
 }
 
@@ -432,8 +427,10 @@ static int count_corners(const sn_net *net) {
 static double shortest_time(const sn_net *net) {
     double least = INFINITY;
     for (int r = 0; r < net->region_count; r++)
-        for (int k = 0; k < net->region[r].memory.terms; k++)
-            least = fmin(least, net->region[r].memory.tau[k]);
+        for (int p = 0; p < SN_PARTS; p++) {
+            const sn_exponentials *memory = sn_region_memory(&net->region[r], (sn_part)p);
+            for (int k = 0; k < memory->terms; k++) least = fmin(least, memory->tau[k]);
+        }
     return least;
 }
 

@@ -49,7 +49,8 @@ double sn_run_store(sn_run *run, const sn_moment *moment) {
 
 static bool remembers(const sn_net *net) {
     for (int r = 0; r < net->region_count; r++)
-        if (net->region[r].branches > 0) return true;
+        for (int p = 0; p < SN_PARTS; p++)
+            if (sn_region_branches(&net->region[r], (sn_part)p) > 0) return true;
     return false;
 }
 
@@ -124,8 +125,9 @@ static void describe(const sn_net *net, sn_run_summary *s) {
     s->unknowns = 3 * net->nodes - net->fixed_count;
     s->threads = net->threads;
     snprintf(s->note, sizeof s->note, "%s", net->note);
-    for (int r = 0; r < net->region_count; r++) {
-        const sn_exponentials *e = &net->region[r].memory;
+    for (int n = 0; n < net->region_count * SN_PARTS; n++) {
+        const sn_exponentials *e =
+            sn_region_memory(&net->region[n / SN_PARTS], (sn_part)(n % SN_PARTS));
         if (e->terms > s->memory_terms) s->memory_terms = e->terms;
         s->memory_error = fmax(s->memory_error, e->max_error);
         s->memory_band_s[0] = e->t_min;

@@ -26,12 +26,17 @@ static const char state_magic[8] = "SNSTATE", run_magic[8] = "SNRUN";
 
 // of the constants as the kernels have them, whatever rule they came from
 static uint64_t mix_region(uint64_t hash, const sn_net_region *g) {
-    const sn_exponentials *e = &g->memory;
-    const double numbers[] = {g->density,    g->shear, g->bulk,    g->exponent,
-                              g->stiffening, e->g_inf, e->viscous, (double)e->terms};
+    const double numbers[] = {g->density,  g->shear,      g->bulk,
+                              g->exponent, g->stiffening, (double)g->splits};
     hash = sn_hash(hash, numbers, sizeof numbers);
-    hash = sn_hash(hash, e->g, (size_t)e->terms * sizeof *e->g);
-    return sn_hash(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    for (int p = 0; p < (g->tissue.branched ? SN_PARTS : 1); p++) {
+        const sn_exponentials *e = sn_region_memory(g, (sn_part)p);
+        const double heads[] = {e->g_inf, e->viscous, (double)e->terms};
+        hash = sn_hash(hash, heads, sizeof heads);
+        hash = sn_hash(hash, e->g, (size_t)e->terms * sizeof *e->g);
+        hash = sn_hash(hash, e->tau, (size_t)e->terms * sizeof *e->tau);
+    }
+    return hash;
 }
 
 uint64_t sn_net_fingerprint(const sn_case *c, const sn_net *net) {

@@ -160,8 +160,7 @@ void sn_state_find_forces(const sn_net *net, sn_state *s) {
 // forces after a sudden change: the branches take all of it, as by a step of no length
 static void change_suddenly(const sn_net *net, sn_state *s) {
     sn_net_factors(net, 1e-12 * net->until, s->factors);
-    for (int r = 0; r < net->region_count; r++) // its impulse is over at once
-        if (net->region[r].memory.viscous > 0) s->factors[r].gain[net->region[r].memory.terms] = 0;
+    sn_net_no_impulse(net, s->factors);
     s->factors_step = 0;
     find_forces(net, s, SN_MEMORY_ADVANCE);
 }
@@ -420,6 +419,7 @@ static void look_at_frequency(const sn_net *net, sn_state *s) {
         s->seen_omega2 = omega2;
         double stiffer = fmin(1.0, fmax(0.0, 2.0 * (omega2 / net->omega2 - 1.0)));
         s->omega2 = omega2 * fmax(growth, 1.0) * (1.0 + 0.44 * stiffer);
+        if (sn_net_has_fibres(net)) s->omega2 = fmax(s->omega2, net->omega2); // all of them taut
     }
     s->check_in = s->check_every;
     s->moved = 0;
@@ -445,7 +445,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
         sn_implicit_advance(net, s, dt);
         return (sn_step_info){s->time, s->last_step, s->warnings};
     }
-    double limit = SN_STEP_SAFETY * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
+    double limit = sn_net_step_safety(net) * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
     double h = fmin(dt, net->asked_step > 0 ? fmin(net->asked_step, limit) : limit);
     if (net->asked_step > limit) s->warnings++;
     if (h != s->factors_step) {
@@ -500,8 +500,13 @@ static bool same_body(const sn_net *a, const sn_net *b) {
 }
 
 static bool same_branches(const sn_net *a, const sn_net *b) {
-    for (int r = 0; r < a->region_count; r++)
-        if (a->region[r].branches != b->region[r].branches) return false;
+    for (int r = 0; r < a->region_count; r++) {
+        const sn_net_region *g = &a->region[r], *h = &b->region[r];
+        if (g->tissue.branched != h->tissue.branched || g->splits != h->splits) return false;
+        for (int p = 0; p < SN_PARTS; p++)
+            if (sn_region_branches(g, (sn_part)p) != sn_region_branches(h, (sn_part)p))
+                return false;
+    }
     return true;
 }
 

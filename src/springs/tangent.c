@@ -242,14 +242,13 @@ static double mean_pressure(const sn_net *net, const double *pressure, int slot)
     return sum;
 }
 
-static void unpack(const double *D, size_t lane, double scale, double out[6][6]) {
+static void unpack(const double *D, size_t lane, double out[6][6]) {
     for (int i = 0, k = 0; i < 6; i++)
-        for (int j = i; j < 6; j++, k++)
-            out[i][j] = out[j][i] = scale * D[k * SN_BLOCK + (int)lane];
+        for (int j = i; j < 6; j++, k++) out[i][j] = out[j][i] = D[k * SN_BLOCK + (int)lane];
 }
 
-static void block_law(const sn_net *net, const sn_net_region *region, int block, const double *u,
-                      law_values *law) {
+static void block_law(const sn_net *net, const sn_net_region *region, const sn_tangent_law *parts,
+                      int block, const double *u, law_values *law) {
     for (int lane = 0; lane < SN_BLOCK; lane++) {
         cell_values c;
         double E[6];
@@ -257,34 +256,31 @@ static void block_law(const sn_net *net, const sn_net_region *region, int block,
         green_strain(c.F, E);
         for (int k = 0; k < 6; k++) law->E[k * SN_BLOCK + lane] = E[k];
     }
-    const sn_tissue *tissue = &region->tissue;
-    sn_law_solid(tissue->law, tissue->value, tissue->terms, SN_BLOCK, law->E, NULL, law->S, law->D);
+    sn_tangent_law_at(region, parts, (size_t)(block - region->cell_block) * SN_BLOCK, SN_BLOCK,
+                      law->E, law->S, law->D);
 }
 
 static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region *region,
-                           double alpha, int block, const sn_tangent_call *call, law_values *law) {
-    const bool coupled = net->rung == SN_RUNG_COUPLED;
-    const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
-    const size_t base = (size_t)(block - region->cell_block) * components * SN_BLOCK;
+                           const sn_tangent_law *parts, int block, const sn_tangent_call *call,
+                           law_values *law) {
+    const bool solid = net->rung != SN_RUNG_SMOOTHED && parts->first < parts->splits;
     const double *volume = sn_parts_volume(net, call->parts, SN_DOUBLE);
-    if (coupled) block_law(net, region, block, call->u, law);
+    if (solid) block_law(net, region, parts, block, call->u, law);
     for (size_t lane = 0; lane < SN_BLOCK; lane++) {
         const int slot = block * SN_BLOCK + (int)lane;
         cell_values c;
         double K[4][4][9] = {{{0}}}, S[6], D[6][6];
         if (!(volume[slot] > 0)) continue;
         find_values(net, slot, call->u, &c);
-        if (coupled) {
-            for (size_t k = 0; k < 6; k++)
-                S[k] = sn_tangent_stress(region, call, alpha, region->cell_store,
-                                         base + k * SN_BLOCK + lane, law->S[k * SN_BLOCK + lane]);
-            unpack(law->D, lane, alpha, D);
+        if (solid) {
+            for (size_t k = 0; k < 6; k++) S[k] = law->S[k * SN_BLOCK + lane];
+            unpack(law->D, lane, D);
             add_law(&c, S, D, K);
         }
-        if (coupled && net->volume_mode == SN_VOLUME_CELL) {
-            double p = sn_tangent_stress(region, call, alpha, region->cell_store,
-                                         base + 6 * SN_BLOCK + lane, region->bulk * (c.J - 1.0));
-            add_volume(&c, alpha * region->bulk, p, K);
+        if (solid && net->volume_mode == SN_VOLUME_CELL) {
+            const size_t n = (size_t)(slot - region->cell_block * SN_BLOCK);
+            double p = sn_tangent_pressure(parts, n, region->bulk * (c.J - 1.0));
+            add_volume(&c, parts->volume.alpha * region->bulk, p, K);
         } else if (net->volume_mode == SN_VOLUME_NODE) {
             add_volume(&c, 0.0, mean_pressure(net, call->pressure, slot), K);
             add_flux(net, t, slot, &c);
@@ -295,8 +291,8 @@ static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region
 
 //---- springs -------------------------------------------------------------------------------------
 
-static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *region, double alpha,
-                       int slot, const sn_tangent_call *call) {
+static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *region,
+                       const sn_tangent_memory *m, int slot, const sn_tangent_call *call) {
     const sn_net_data *data = &net->data[SN_DOUBLE];
     const double *stiffness = sn_parts_stiffness(net, call->parts, SN_DOUBLE);
     const double k = stiffness[slot], B = region->exponent;
@@ -319,10 +315,9 @@ static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *re
         tension = fabs(B * s) < 1e-12 ? s : expm1(B * s) / B;
         slope = exp(B * s);
     }
-    tension = sn_tangent_stress(region, call, alpha, region->spring_store,
-                                (size_t)(slot - region->spring_block * SN_BLOCK), tension);
+    tension = sn_tangent_stress(m, (size_t)(slot - region->spring_block * SN_BLOCK), tension);
     double across = k * tension / lambda;
-    double along = k * (alpha * slope - tension / lambda) / (lambda * lambda) * inverse;
+    double along = k * (m->alpha * slope - tension / lambda) / (lambda * lambda) * inverse;
     for (int a = 0; a < 2; a++)
         for (int b = 0; b < 2; b++) {
             double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, end[a], end[b]);
@@ -342,19 +337,22 @@ void sn_tangent_assemble(const sn_net *net, sn_tangent *t, const sn_tangent_call
         memset(t->flux, 0, (size_t)t->points.start[t->points.rows] * 3 * sizeof *t->flux);
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *g = &net->region[r];
-        double alpha = call->factors && g->branches > 0 ? call->factors[r].alpha : 1.0;
-        if (net->rung == SN_RUNG_COUPLED || net->volume)
+        const sn_tangent_memory springs = sn_tangent_memory_of(net, g, call, SN_STORE_SPRING);
+        const sn_tangent_memory points = sn_tangent_memory_of(net, g, call, SN_STORE_POINT);
+        sn_tangent_law parts;
+        sn_tangent_law_of(net, g, call, &parts);
+        if ((net->rung != SN_RUNG_SMOOTHED && sn_region_law_blocks(net, g) > 0) || net->volume)
             for (int b = g->cell_block; b < g->cell_block + g->cell_blocks; b++)
-                assemble_block(net, t, g, alpha, b, call, &law);
-        if (net->rung == SN_RUNG_SMOOTHED) sn_tangent_add_edges(net, t, g, alpha, call);
+                assemble_block(net, t, g, &parts, b, call, &law);
+        if (net->rung == SN_RUNG_SMOOTHED) sn_tangent_add_edges(net, t, g, &parts, call);
         if (net->rung == SN_RUNG_CENTRAL)
             for (int s = g->spring_block * SN_BLOCK;
                  s < (g->spring_block + g->spring_blocks) * SN_BLOCK; s++)
-                add_spring(net, t, g, alpha, s, call);
+                add_spring(net, t, g, &springs, s, call);
         const double *stiffness = sn_parts_point_stiffness(net, call->parts, SN_DOUBLE);
         for (int p = g->point_block * SN_BLOCK; p < (g->point_block + g->point_blocks) * SN_BLOCK;
              p++)
-            t->stiffness[p] = alpha * stiffness[p];
+            t->stiffness[p] = points.alpha * stiffness[p];
     }
 }
 

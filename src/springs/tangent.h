@@ -57,11 +57,17 @@ static inline void sn_strain_rows(const double F[9], const double g[3], double B
     }
 }
 
-/// Number `at` of the stress with memory, from its instantaneous value T.
-static inline double sn_tangent_stress(const sn_net_region *region, const sn_tangent_call *call,
-                                       double alpha, size_t first, size_t at, double T) {
-    if (region->branches == 0 || !call->factors) return T;
-    return alpha * T + call->history[first + at];
+/// How the stress at the end of a step follows from its instantaneous value T: alpha T + history.
+typedef struct sn_tangent_memory {
+    double alpha;
+    const double *history; ///< Nullable: there is none
+} sn_tangent_memory;
+/// Of one kind of item; the history starts at its first number.
+sn_tangent_memory sn_tangent_memory_of(const sn_net *net, const sn_net_region *region,
+                                       const sn_tangent_call *call, int store);
+/// Number `at` of the stress with memory.
+static inline double sn_tangent_stress(const sn_tangent_memory *m, size_t at, double T) {
+    return m->history ? m->alpha * T + m->history[at] : T;
 }
 
 static inline double sn_dot(const double *a, const double *b, size_t n) {
@@ -70,6 +76,26 @@ static inline double sn_dot(const double *a, const double *b, size_t n) {
     return sum;
 }
 
+/// What of a region's stress is where a solid law is, and how each part remembers.
+typedef struct sn_tangent_law {
+    int first, splits;                      ///< of region->split
+    sn_tangent_memory memory[2];            ///< by split
+    sn_tangent_memory volume;               ///< K (J - 1) where the law is
+    size_t components[2];                   ///< numbers of a place in the history, by split
+    size_t volume_components, volume_first; ///< the same, and which of them the volume is
+} sn_tangent_law;
+void sn_tangent_law_of(const sn_net *net, const sn_net_region *region, const sn_tangent_call *call,
+                       sn_tangent_law *law);
+/// K (J - 1) = p at place n of the region, as it acts now.
+static inline double sn_tangent_pressure(const sn_tangent_law *law, size_t n, double p) {
+    const size_t block = n / SN_BLOCK * law->volume_components + law->volume_first;
+    return sn_tangent_stress(&law->volume, block * SN_BLOCK + n % SN_BLOCK, p);
+}
+/// S and D of count places of the region from place n on, n and count within a block, as they act
+/// now. S: (6 x count), D: (21 x count).
+void sn_tangent_law_at(const sn_net_region *region, const sn_tangent_law *law, size_t n, int count,
+                       const double *E, double *S, double *D);
+
 //---- smoothed edges (springs/tangent_edges.c) ----------------------------------------------------
 
 /// Scratch, and the pattern of nodes that share an edge's cells.
@@ -77,4 +103,4 @@ sn_status sn_tangent_create_edges(const sn_net *net, sn_tangent *tangent);
 void sn_tangent_destroy_edges(sn_tangent *tangent);
 /// Adds the law, and without nodal volume the volume stress, at the edges of a region.
 void sn_tangent_add_edges(const sn_net *net, sn_tangent *tangent, const sn_net_region *region,
-                          double alpha, const sn_tangent_call *call);
+                          const sn_tangent_law *law, const sn_tangent_call *call);

@@ -90,10 +90,10 @@ static void deform(const sn_net *net, const double *u, struct sn_cluster *c) {
 
 //---- stiffness -----------------------------------------------------------------------------------
 
-static void find_rows(struct sn_cluster *c, double alpha) {
+static void find_rows(struct sn_cluster *c) {
     double D[6][6];
     for (int i = 0, k = 0; i < 6; i++)
-        for (int j = i; j < 6; j++, k++) D[i][j] = D[j][i] = alpha * c->D[k];
+        for (int j = i; j < 6; j++, k++) D[i][j] = D[j][i] = c->D[k];
     for (int a = 0; a < c->nodes; a++) {
         sn_strain_rows(c->F, c->g[a], c->B[a]);
         for (int k = 0; k < 6; k++)
@@ -125,10 +125,8 @@ static void add_stiffness(sn_tangent *t, const struct sn_cluster *c, double bulk
 }
 
 void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region *region,
-                          double alpha, const sn_tangent_call *call) {
+                          const sn_tangent_law *law, const sn_tangent_call *call) {
     const bool with_volume = net->volume_mode == SN_VOLUME_CELL;
-    const size_t components = with_volume ? 7 : 6;
-    const sn_tissue *tissue = &region->tissue;
     struct sn_cluster *c = t->cluster;
     for (int e = region->edge_block * SN_BLOCK;
          e < (region->edge_block + region->edge_blocks) * SN_BLOCK; e++) {
@@ -136,18 +134,12 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
         gather_cluster(net, call->parts, e, c);
         if (!(c->V > 0)) continue;
         deform(net, call->u, c);
-        sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, c->E, NULL, c->S, c->D);
-        const size_t block = (size_t)(e / SN_BLOCK - region->edge_block);
-        const size_t at = block * components * SN_BLOCK + (size_t)e % SN_BLOCK;
-        for (size_t k = 0; k < 6; k++)
-            c->S[k] = sn_tangent_stress(region, call, alpha, region->cell_store, at + k * SN_BLOCK,
-                                        c->S[k]);
+        const size_t n = (size_t)(e - region->edge_block * SN_BLOCK);
+        sn_tangent_law_at(region, law, n, 1, c->E, c->S, c->D);
         double p = 0, bulk = with_volume ? region->bulk : 0.0;
-        if (with_volume)
-            p = sn_tangent_stress(region, call, alpha, region->cell_store, at + 6 * SN_BLOCK,
-                                  bulk * (c->J - 1.0));
-        find_rows(c, alpha);
-        add_stiffness(t, c, alpha * bulk, p);
+        if (with_volume) p = sn_tangent_pressure(law, n, bulk * (c->J - 1.0));
+        find_rows(c);
+        add_stiffness(t, c, law->volume.alpha * bulk, p);
     }
 }
 

@@ -218,10 +218,9 @@ static sn_status cut_region(const sn_mesh *mesh, sn_net *net, int r, int *point,
     const sn_net_region *g = &net->region[r];
     if (net->volume) find_points(net, g, point);
     tile_source s = {.region = r};
-    if (net->rung == SN_RUNG_CENTRAL) {
-        SN_TRY(cut_stars(net, &s, m, &net->spring_tiles));
-    } else {
-        s.point = net->volume ? point : NULL;
+    if (net->rung == SN_RUNG_CENTRAL) SN_TRY(cut_stars(net, &s, m, &net->spring_tiles));
+    if (sn_region_law_blocks(net, g) > 0) {
+        s = (tile_source){.region = r, .point = net->volume ? point : NULL};
         SN_TRY(cut_cells(net, &s, m, &net->cell_tiles));
     }
     if (!net->volume) return SN_OK;
@@ -264,14 +263,18 @@ static sn_status list_entries(const int *owner, int entries, int owners, int **s
 sn_status sn_net_build_tiles(const sn_case *c, sn_net *net) {
     SN_TRY(cut_all(c->mesh, net));
     // fans give forces of their own only where cells do not
-    const sn_tiles *springs = &net->spring_tiles, *fans = &net->fan_tiles;
-    const sn_tiles *other = net->rung != SN_RUNG_CENTRAL ? &net->cell_tiles : fans;
-    const int own = sn_tiles_entries(springs), all = own + sn_tiles_entries(other);
-    net->part_count = all;
-    net->other_part = own;
+    const sn_tiles *fans = &net->fan_tiles;
+    const sn_tiles *const kind[] = {&net->spring_tiles, net->rung == SN_RUNG_CENTRAL ? fans : NULL,
+                                    &net->cell_tiles};
+    int first[4] = {0};
+    for (int k = 0; k < 3; k++) first[k + 1] = first[k] + (kind[k] ? sn_tiles_entries(kind[k]) : 0);
+    const int all = net->part_count = first[3];
+    net->fan_part = first[1];
+    net->cell_part = first[2];
     int *owner = sn_alloc((size_t)all, sizeof *owner);
     if (!owner) return SN_E_MEMORY;
-    for (int k = 0; k < all; k++) owner[k] = k < own ? springs->node[k] : other->node[k - own];
+    for (int k = 0; k < 3; k++)
+        for (int i = first[k]; i < first[k + 1]; i++) owner[i] = kind[k]->node[i - first[k]];
     sn_status status = list_entries(owner, all, net->nodes, &net->node_start, &net->node_item);
     sn_free(owner);
     if (status == SN_OK && net->volume)

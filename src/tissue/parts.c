@@ -77,12 +77,20 @@ static void silence(sn_tissue *tissue, sn_part part) {
 
 int sn_tissue_split(const sn_tissue *tissue, sn_tissue part[2]) {
     SN_ASSERT(tissue->law);
+    if (tissue->branched && !alike(&tissue->memory, &tissue->fibre))
+        return sn_tissue_split_fibres(tissue, part);
     part[0] = *tissue;
     part[0].branched = false;
-    if (!tissue->branched || !tissue->law->fibre_constant || alike(&tissue->memory, &tissue->fibre))
-        return 1;
+    return 1;
+}
+
+int sn_tissue_split_fibres(const sn_tissue *tissue, sn_tissue part[2]) {
+    SN_ASSERT(tissue->law);
+    part[0] = *tissue;
+    part[0].branched = false;
+    if (!tissue->law->fibre_constant) return 1;
     part[1] = part[0];
-    part[1].memory = tissue->fibre;
+    part[1].memory = *sn_tissue_memory(tissue, SN_PART_FIBRE);
     silence(&part[0], SN_PART_FIBRE);
     silence(&part[1], SN_PART_DEVIATORIC);
     return 2;

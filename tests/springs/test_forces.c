@@ -169,10 +169,10 @@ static void coupled_cells_are_linear_elements(void **state) {
 typedef void each_rung(const sn_case *c, const sn_net *net);
 
 static void for_each_rung(each_rung *check) {
-    for (int n = 0; n < 14; n++) {
+    for (int n = 0; n < 16; n++) {
         static const int like[] = {0, 2, 5, 7}; // smoothed: as these, in part central, kinds
-        const bool smoothed = n >= 10;
-        const int k = smoothed ? like[n - 10] : n;
+        const bool smoothed = n >= 10 && n < 14, fibres = n >= 14; // central, with families
+        const int k = smoothed ? like[n - 10] : fibres ? 2 * (n - 14) : n;
         bool central = k >= 6 ? k % 2 : k % 2 == 1;
         sn_tissue t = k < 4 ? neo_hookean(3e3, 2e4) : demiray(2e3, 4, 4e4);
         if (k >= 8) {
@@ -183,6 +183,11 @@ static void for_each_rung(each_rung *check) {
             central = true;
         }
         sn_case *c = make_block(size, cells, k == 5 ? SN_PATTERN_BCC : SN_PATTERN_MIRRORED, &t);
+        if (fibres) {
+            c->tissue[0] = some_tissue(sn_law_find("hgo"));
+            c->fibre[0] = 0.6, c->fibre[2] = 0.8;
+            central = true;
+        }
         if (k != 3) jitter(c, 0.2, 21);
         if (k == 7) { // two regions
             c->mesh->region_count = 2;

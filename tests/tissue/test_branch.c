@@ -63,6 +63,24 @@ static void memories_of_parts(void **state) {
         assert_ptr_equal(sn_tissue_memory(&t, (sn_part)k), &t.memory);
 }
 
+// Matrix and fibres apart whatever their memories, each with its own.
+static void fibres_split_at_will(void **state) {
+    (void)state;
+    sn_tissue part[2], t = branched("hgo");
+    for (int k = 0; k < 2; k++) {
+        t.branched = k;
+        assert_int_equal(sn_tissue_split(&t, part), 1 + k);
+        assert_int_equal(sn_tissue_split_fibres(&t, part), 2);
+        assert_true(sn_tissue_value(&part[0], "k1") == 0 && sn_tissue_value(&part[1], "mu") == 0);
+        assert_true(sn_tissue_value(&part[0], "mu") == sn_tissue_value(&t, "mu"));
+        assert_true(sn_tissue_value(&part[1], "k1") == sn_tissue_value(&t, "k1"));
+        assert_ptr_equal(part[1].memory.law, (k ? &t.fibre : &t.memory)->law);
+        assert_false(part[0].branched || part[1].branched);
+    }
+    t = some_tissue(sn_law_find("guccione"));
+    assert_int_equal(sn_tissue_split_fibres(&t, part), 1);
+}
+
 enum { POINTS = 40 };
 
 static double largest(const double *v, int n) {
@@ -218,9 +236,10 @@ static void to_long_term_refuses(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(check_refuses), cmocka_unit_test(memories_of_parts),
-        cmocka_unit_test(parts_add_up),  cmocka_unit_test(from_long_term),
-        cmocka_unit_test(round_trip),    cmocka_unit_test(to_long_term_refuses),
+        cmocka_unit_test(check_refuses),        cmocka_unit_test(memories_of_parts),
+        cmocka_unit_test(fibres_split_at_will), cmocka_unit_test(parts_add_up),
+        cmocka_unit_test(from_long_term),       cmocka_unit_test(round_trip),
+        cmocka_unit_test(to_long_term_refuses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,19 +22,18 @@ void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
     tile_nodes nodes;
     cell_block c;
     const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
-    const int components = pass->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     tile_load(tile, pass->u, nodal ? pass->pressure : NULL, &nodes);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
     for (int b = 0; b < tile->blocks; b++) {
         const int block = tile->block + b;
         const size_t at = (size_t)block * SN_BLOCK;
         const uint16_t *corner = tile->corner + 4 * b * SN_BLOCK;
-        block_ask_memory(&pass->memory, block - pass->first, components * SN_BLOCK);
+        ask_memory(pass, block - pass->first);
         displacement_gradient(pass, &nodes, corner, at, nodal, &c);
         strain(pass, &c);
         if (pass->upright > 0) add_upright(pass, &c);
         evaluate_law(pass, &c);
-        block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
+        remember(pass, block - pass->first, &c);
         find_forces(pass, at, &c);
         add_forces(c.f, corner, tile->force);
     }

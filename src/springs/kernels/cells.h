@@ -163,6 +163,37 @@ SN_INLINE void evaluate_law(const sn_cell_pass *pass, cell_block *c) {
 #endif
 }
 
+// T of block `block` of the memory becomes what it has relaxed to
+SN_INLINE void remember(const sn_cell_pass *pass, int block, cell_block *c) {
+    if (!pass->apart) {
+        const int components = pass->volume_mode == SN_VOLUME_CELL ? 7 : 6;
+        block_memory(&pass->memory, block, components * SN_BLOCK, c->T);
+        return;
+    }
+    block_memory(&pass->memory, block, 6 * SN_BLOCK, c->T);
+    if (pass->volume_mode == SN_VOLUME_CELL)
+        block_memory(&pass->bulk_memory, block, SN_BLOCK, c->T + 6 * SN_BLOCK);
+    if (!pass->fibre_value) return;
+    real *S = c->f; // not in use yet
+#if SN_REAL_BITS == 64
+    sn_law_solid(pass->law, pass->fibre_value, pass->terms, SN_BLOCK, c->E, NULL, S, NULL);
+#else
+    sn_law_solid_f(pass->law, pass->fibre_value_f, pass->terms, SN_BLOCK, c->E, NULL, S, NULL);
+#endif
+    block_memory(&pass->fibre_memory, block, 6 * SN_BLOCK, S);
+    for (int i = 0; i < 6 * SN_BLOCK; i += SN_LANES)
+        wide_store(c->T + i, wide_load(c->T + i) + wide_load(S + i));
+}
+
+// asks for what remember() will read
+SN_INLINE void ask_memory(const sn_cell_pass *pass, int block) {
+    const bool own_volume = pass->volume_mode == SN_VOLUME_CELL;
+    block_ask_memory(&pass->memory, block, (own_volume && !pass->apart ? 7 : 6) * SN_BLOCK);
+    if (!pass->apart) return;
+    if (own_volume) block_ask_memory(&pass->bulk_memory, block, SN_BLOCK);
+    if (pass->fibre_value) block_ask_memory(&pass->fibre_memory, block, 6 * SN_BLOCK);
+}
+
 // forces of the corners of a block to the nodes of the tile
 SN_INLINE void add_forces(const real *f, const uint16_t *corner, real *force) {
     for (int a = 0; a < 4; a++)

@@ -89,14 +89,13 @@ SN_INLINE void find_piola(const sn_cell_pass *pass, cell_block *c) {
 
 void SN_KERNEL(sn_edges)(const sn_cell_pass *pass, int block) {
     const size_t at = (size_t)block * SN_BLOCK;
-    const int components = pass->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     real *to = (real *)pass->piola + ITEM * at;
     cell_block c;
-    block_ask_memory(&pass->memory, block - pass->first, components * SN_BLOCK);
+    ask_memory(pass, block - pass->first);
     gather_shapes(pass, at, &c);
     strain(pass, &c);
     evaluate_law(pass, &c);
-    block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
+    remember(pass, block - pass->first, &c);
     find_piola(pass, &c);
     for (int i = 0; i < SN_BLOCK; i += 4, to += 4 * ITEM)
         for (int r = 0; r < 3; r++) {

@@ -1,0 +1,188 @@
+// A memory for each part of the stress, and fibres beside springs: the rungs against linear finite
+// elements and against the virtual testing machine.
+// SPDX-License-Identifier: Apache-2.0
+#include <math.h>
+#include <string.h>
+
+#include "check.h"
+#include "sinew/sinew.h"
+
+#define LENGTH 0.012
+#define SIDE 0.004
+
+static sn_history *ramp(double until) {
+    sn_history *history;
+    CHECK_OK(sn_history_create(1, 2, (double[]){0, until}, (double[]){0, 1}, &history));
+    return history;
+}
+
+// hgo: one family along the first axis, or two at an angle to it
+static sn_tissue artery(double k1, double kappa, double angle, double bulk) {
+    static const char *const name[] = {"mu", "k1", "k2", "kappa", "angle", "bulk_modulus"};
+    const double value[] = {1300, k1, 1.6, kappa, angle, bulk};
+    sn_tissue t = sn_tissue_default();
+    t.law = sn_law_find("hgo");
+    t.density = 1000;
+    for (int k = 0; k < 6; k++) CHECK_OK(sn_tissue_set(&t, name[k], value[k]));
+    return t;
+}
+
+static void part_memories(sn_tissue *t) {
+    t->branched = true;
+    t->memory =
+        (sn_memory){.law = sn_memory_law_find("prony"), .terms = 2, .value = {0.3, 0.2, 0.25, 3}};
+    t->volumetric = (sn_memory){.law = sn_memory_law_find("kelvin"), .value = {0.4, 0.7}};
+    t->fibre = (sn_memory){.law = sn_memory_law_find("fung-spectrum"), .value = {0.2, 0.02, 30}};
+    CHECK_OK(sn_tissue_check(t));
+}
+
+// A strip held at the left (`clamped`: in all directions, else it may contract) and pulled by
+// `pull` of its length and `shear` of its side within a second. Fibres in the plane of x and y.
+static sn_case *strip(const sn_tissue *t, double turn, bool clamped, double pull, double shear) {
+    sn_case *c;
+    CHECK_OK(sn_case_create(&c));
+    c->shape =
+        (sn_shape_def){.shape = SN_SHAPE_BLOCK, .size = {LENGTH, SIDE, SIDE}, .cells = {6, 2, 2}};
+    c->has_shape = true;
+    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
+    c->tissue = sn_alloc(1, sizeof *c->tissue);
+    c->tissue[0] = *t;
+    c->fibre[0] = cos(turn), c->fibre[1] = sin(turn);
+    c->support_count = clamped ? 1 : 3;
+    c->support = sn_alloc(3, sizeof *c->support);
+    static const char *const held[] = {"left", "front", "bottom"};
+    for (int k = 0; k < c->support_count; k++) {
+        c->support[k].surface = sn_mesh_surface(c->mesh, held[k]);
+        for (int d = 0; d < 3; d++) c->support[k].fix[d] = clamped || d == k;
+    }
+    c->load_count = 1;
+    c->load = sn_alloc(1, sizeof *c->load);
+    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
+                           .surface = sn_mesh_surface(c->mesh, "right"),
+                           .vector = {pull * LENGTH, shear * SIDE, 0},
+                           .free = {false, !clamped, !clamped},
+                           .factor = ramp(1)};
+    c->probe_count = 1;
+    c->probe = sn_alloc(1, sizeof *c->probe);
+    c->probe[0] = (sn_probe){
+        .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
+    c->until = 1.5;
+    c->output_every = 0.1;
+    c->springs.precision = SN_DOUBLE;
+    c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
+    c->springs.volume = false;
+    c->continuum.element = SN_ELEMENT_P1;
+    c->continuum.steps = 150; // 100 in the ramp
+    CHECK_OK(sn_case_check(c));
+    return c;
+}
+
+typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
+
+static sn_record *reaction(engine *run, const sn_case *c) {
+    sn_record *history;
+    sn_run_summary summary = {0};
+    CHECK_OK(sn_record_create("run", &history));
+    CHECK_OK(run(c, &(sn_output){0}, &summary, history));
+    if (!summary.converged) print_message("%s\n", summary.reason);
+    assert_true(summary.converged);
+    return history;
+}
+
+// largest difference of the pulls over the largest pull of b
+static double distance(const sn_record *a, const sn_record *b) {
+    const double *x = sn_record_values(a, "pull_fx"), *y = sn_record_values(b, "pull_fx");
+    double largest = 0, difference = 0;
+    assert_int_equal(a->rows, b->rows);
+    for (int i = 0; i < a->rows; i++) {
+        largest = fmax(largest, fabs(y[i]));
+        difference = fmax(difference, fabs(x[i] - y[i]));
+    }
+    assert_true(largest > 0);
+    return difference / largest;
+}
+
+// Coupled springs without the volume term are linear elements with branches too: pulled and sheared
+// between clamps, fibres askew. Each engine takes its own steps, as in test_strip.c: second order,
+// at least 100 in the ramp of the one and 20 in that of the other.
+static void coupled_springs_are_linear_elements(void **state) {
+    (void)state;
+    sn_tissue t = artery(1900, 0.1, 0.5, 2e4);
+    part_memories(&t);
+    sn_case *c = strip(&t, 0.6, true, 0.2, 0.3);
+    c->springs.rung = SN_RUNG_COUPLED;
+    sn_record *springs = reaction(sn_springs_run, c), *elements = reaction(sn_continuum_run, c);
+    CHECK_ABS(distance(springs, elements), 0, 3.2e-4);
+    sn_record_destroy(springs);
+    // steps of one length on both sides: what is left are the tolerances of both
+    c->springs.step = 0.01;
+    c->springs.memory_tolerance = c->continuum.memory_tolerance = 1e-6;
+    sn_record *same = reaction(sn_springs_run, c), *finer = reaction(sn_continuum_run, c);
+    CHECK_ABS(distance(same, finer), 0, 1e-6);
+    // not vacuous: one memory for all is another tissue
+    c->tissue[0].branched = false;
+    springs = reaction(sn_springs_run, c);
+    assert_true(distance(springs, elements) > 1e-2);
+    sn_record_destroy(springs);
+    sn_record_destroy(elements);
+    sn_record_destroy(same);
+    sn_record_destroy(finer);
+    sn_case_destroy(c);
+}
+
+// Sides free, compressible: every rung that has the law itself follows the virtual test.
+static void rungs_follow_the_virtual_test(void **state) {
+    (void)state;
+    sn_tissue t = artery(1900, 0.1, 0.5, 1.3e5);
+    part_memories(&t);
+    for (int k = 0; k < 4; k++) {
+        sn_case *c = strip(&t, 0, false, 0.2, 0);
+        c->springs.rung = k % 2 ? SN_RUNG_SMOOTHED : SN_RUNG_COUPLED;
+        c->springs.volume = k / 2;
+        sn_record *springs = reaction(sn_springs_run, c);
+        sn_history *stretch;
+        const double *time = sn_record_values(springs, "time");
+        const double *pull = sn_record_values(springs, "pull_fx");
+        double *stress = sn_alloc((size_t)springs->rows, sizeof *stress), worst = 0, most = 0;
+        CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){1, 1.2}, &stretch));
+        CHECK_OK(sn_lab_uniaxial(&t, stretch, springs->rows, time, stress));
+        for (int i = 0; i < springs->rows; i++) {
+            worst = fmax(worst, fabs(pull[i] - stress[i] * SIDE * SIDE));
+            most = fmax(most, fabs(stress[i] * SIDE * SIDE));
+        }
+        CHECK_ABS(worst / most, 0, 2e-3); // 20 steps in the ramp, memories to 1e-3
+        sn_free(stress);
+        sn_history_destroy(stretch);
+        sn_record_destroy(springs);
+        sn_case_destroy(c);
+    }
+}
+
+// A strip along its fibres and across them, on central springs with fibres and nodal volume,
+// against linear elements.
+static void central_strips_along_and_across(void **state) {
+    (void)state;
+    for (int k = 0; k < 6; k++) {
+        sn_tissue t = artery(4000, 0, 0, 1.3e4);
+        if (k % 3 == 2) part_memories(&t);
+        sn_case *c = strip(&t, k % 3 == 1 ? acos(-1) / 2 : 0, k / 3, 0.15, 0);
+        c->springs.volume = true;
+        c->springs.rung = SN_RUNG_CENTRAL;
+        sn_record *springs = reaction(sn_springs_run, c), *elements = reaction(sn_continuum_run, c);
+        // along, the fibres carry nearly all; across, the springs of the matrix are alone: what the
+        // fit of their law and their own error of the mesh leave
+        CHECK_ABS(distance(springs, elements), 0, k % 3 == 1 ? 0.06 : 0.01);
+        sn_record_destroy(springs);
+        sn_record_destroy(elements);
+        sn_case_destroy(c);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coupled_springs_are_linear_elements),
+        cmocka_unit_test(rungs_follow_the_virtual_test),
+        cmocka_unit_test(central_strips_along_and_across),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
