@@ -82,7 +82,10 @@ static uint64_t fingerprint(const sn_fe_march *m) {
     mix(&hash, kind, sizeof kind);
     mix(&hash, c->mesh->node, 3 * (size_t)c->mesh->node_count * sizeof *c->mesh->node);
     mix(&hash, c->mesh->cell, 4 * (size_t)c->mesh->cell_count * sizeof *c->mesh->cell);
-    mix(&hash, c->fibre, sizeof c->fibre);
+    const sn_fe_space *s = m->problem->space;
+    mix(&hash, s->axes, sizeof s->axes);
+    if (s->turned)
+        mix(&hash, s->turned, 9 * (size_t)s->batches * (size_t)s->batch_cells * sizeof *s->turned);
     mix(&hash, c->gravity, sizeof c->gravity);
     for (int r = 0; r < m->problem->materials->count; r++) {
         const sn_fe_material *of = m->problem->materials->material + r;

@@ -123,7 +123,6 @@ static double of_cells(const sn_net *net, const sn_net_region *region, const sn_
     const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6;
     const branches b = {m, &region->memory, region->cell_store, components * SN_BLOCK,
                         (size_t)region->branches};
-    const sn_tissue *t = &region->tissue;
     double sum = 0;
     for (size_t n = 0; n < (size_t)sn_region_law_blocks(net, region) * SN_BLOCK; n++) {
         const size_t slot = (size_t)sn_region_law_block(net, region) * SN_BLOCK + n;
@@ -131,7 +130,7 @@ static double of_cells(const sn_net *net, const sn_net_region *region, const sn_
         double E[6], S[6], D[21];
         const double V = sn_net_law_strain(net, m, (int)slot, E);
         if (!(V > 0)) continue;
-        sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, D);
+        sn_net_law(net, &region->tissue, (int)slot, 1, E, NULL, S, D);
         for (int k = 0; k < b.memory->terms; k++) {
             const double g = b.memory->g[k];
             double q[6], twice;

@@ -20,8 +20,28 @@ struct sn_fields {
     double *strain, *stress, *energy;           ///< cells of the mesh
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
-    double *edge; ///< strain, stress, energy of smoothed edges: 13 each
+    double *edge;  ///< strain, stress, energy of smoothed edges: 13 each
+    double *fibre; ///< at rest, of cells; NULL: no law has any
 };
+
+static const sn_net_region *region_of(const sn_net *net, int slot) {
+    const sn_net_region *r = net->region;
+    while (slot >= (r->cell_block + r->cell_blocks) * SN_BLOCK) r++;
+    return r;
+}
+
+static sn_status set_fibres(const sn_net *net, sn_fields *f) {
+    bool fibres = false;
+    for (int r = 0; r < net->region_count; r++) fibres |= net->region[r].tissue.law->fibres;
+    if (!fibres) return SN_OK;
+    f->fibre = sn_alloc((size_t)net->cells * 3, sizeof *f->fibre);
+    if (!f->fibre) return SN_E_MEMORY;
+    for (size_t e = 0; e < (size_t)net->cells; e++)
+        if (region_of(net, net->cell_slot[e])->tissue.law->fibres)
+            memcpy(f->fibre + 3 * e, net->cell_axes ? net->cell_axes + 9 * e : net->axes,
+                   3 * sizeof *f->fibre);
+    return SN_OK;
+}
 
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
     *fields = NULL;
@@ -42,6 +62,10 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
         sn_fields_destroy(f);
         return SN_E_MEMORY;
     }
+    if (set_fibres(net, f) != SN_OK) {
+        sn_fields_destroy(f);
+        return SN_E_MEMORY;
+    }
     *fields = f;
     return SN_OK;
 }
@@ -49,7 +73,7 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
 void sn_fields_destroy(sn_fields *f) {
     if (!f) return;
     void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain,
-                   f->stress,       f->energy,   f->growth,   f->edge};
+                   f->stress,       f->energy,   f->growth,   f->edge,   f->fibre};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(f);
 }
@@ -158,10 +182,9 @@ static void solid_place(const sn_net *net, const sn_net_region *region, const sn
     const size_t components = net->volume_mode == SN_VOLUME_CELL ? 7 : 6, n = components * SN_BLOCK;
     const size_t block = (size_t)(slot / SN_BLOCK - sn_region_law_block(net, region));
     const size_t lane = (size_t)slot % SN_BLOCK;
-    const sn_tissue *t = &region->tissue;
     double E[6], S[6], p = region->bulk * (c->J - 1.0);
     green_strain(c->F, E);
-    sn_law_solid(t->law, t->value, t->terms, 1, E, energy, S, NULL);
+    sn_net_law(net, &region->tissue, slot, 1, E, energy, S, NULL);
     if (net->volume_mode == SN_VOLUME_CELL) *energy += 0.5 * p * (c->J - 1.0);
     if (region->branches > 0) {
         for (size_t k = 0; k < 6; k++)
@@ -268,12 +291,6 @@ static void find_growth(const sn_net *net, sn_fields *f, const sn_moment *m) {
         if (net->point_volume[p] > 0) f->growth[p] /= net->point_volume[p];
 }
 
-static const sn_net_region *region_of(const sn_net *net, int slot) {
-    const sn_net_region *r = net->region;
-    while (slot >= (r->cell_block + r->cell_blocks) * SN_BLOCK) r++;
-    return r;
-}
-
 static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
@@ -318,13 +335,14 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
 }
 
 sn_status sn_fields_emit(const sn_fields *f, double time, const sn_output *output) {
-    const sn_field all[] = {{"displacement", "m", SN_ON_NODES, 3, f->displacement},
-                            {"velocity", "m/s", SN_ON_NODES, 3, f->velocity},
-                            {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
-                            {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
-                            {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
-                            {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy}};
-    const sn_frame frame = {time, (int)(sizeof all / sizeof *all), all};
+    const sn_field all[7] = {{"displacement", "m", SN_ON_NODES, 3, f->displacement},
+                             {"velocity", "m/s", SN_ON_NODES, 3, f->velocity},
+                             {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
+                             {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
+                             {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
+                             {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy},
+                             {"fibre", "1", SN_ON_CELLS, 3, f->fibre}};
+    const sn_frame frame = {time, f->fibre ? 7 : 6, all};
     return output->frame(output->context, &frame);
 }
 

@@ -108,6 +108,7 @@ uint64_t sn_net_fingerprint(const sn_net *net) {
     const size_t slots = (size_t)net->cell_blocks * SN_BLOCK;
     uint64_t hash = mix(14695981039346656037u, numbers, sizeof numbers);
     hash = mix(hash, net->axes, sizeof net->axes);
+    if (net->cell_axes) hash = mix(hash, net->cell_axes, (size_t)net->cells * 9 * sizeof(double));
     hash = mix(hash, net->node_position, (size_t)net->nodes * 3 * sizeof(double));
     hash = mix(hash, net->cell_node, slots * 4 * sizeof(int));
     hash = mix(hash, net->data[SN_DOUBLE].volume, slots * sizeof(double));

@@ -248,8 +248,7 @@ static void block_law(const sn_net *net, const sn_net_region *region, int block,
         green_strain(c.F, E);
         for (int k = 0; k < 6; k++) law->E[k * SN_BLOCK + lane] = E[k];
     }
-    const sn_tissue *tissue = &region->tissue;
-    sn_law_solid(tissue->law, tissue->value, tissue->terms, SN_BLOCK, law->E, NULL, law->S, law->D);
+    sn_net_law(net, &region->tissue, block * SN_BLOCK, SN_BLOCK, law->E, NULL, law->S, law->D);
 }
 
 static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region *region,

@@ -126,7 +126,6 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
                           double alpha, const sn_tangent_call *call) {
     const bool with_volume = net->volume_mode == SN_VOLUME_CELL;
     const size_t components = with_volume ? 7 : 6;
-    const sn_tissue *tissue = &region->tissue;
     struct sn_cluster *c = t->cluster;
     for (int e = region->edge_block * SN_BLOCK;
          e < (region->edge_block + region->edge_blocks) * SN_BLOCK; e++) {
@@ -134,7 +133,7 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
         gather_cluster(net, e, c);
         if (!(c->V > 0)) continue;
         deform(net, call->u, c);
-        sn_law_solid(tissue->law, tissue->value, tissue->terms, 1, c->E, NULL, c->S, c->D);
+        sn_net_law(net, &region->tissue, e, 1, c->E, NULL, c->S, c->D);
         const size_t block = (size_t)(e / SN_BLOCK - region->edge_block);
         const size_t at = block * components * SN_BLOCK + (size_t)e % SN_BLOCK;
         for (size_t k = 0; k < 6; k++)

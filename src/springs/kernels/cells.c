@@ -33,7 +33,7 @@ void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
         displacement_gradient(pass, &nodes, corner, at, nodal, &c);
         strain(pass, &c);
         if (pass->upright > 0) add_upright(pass, &c);
-        evaluate_law(pass, &c);
+        evaluate_law(pass, at, &c);
         block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
         find_forces(pass, at, &c);
         add_forces(c.f, corner, tile->force);

@@ -95,7 +95,7 @@ void SN_KERNEL(sn_edges)(const sn_cell_pass *pass, int block) {
     block_ask_memory(&pass->memory, block - pass->first, components * SN_BLOCK);
     gather_shapes(pass, at, &c);
     strain(pass, &c);
-    evaluate_law(pass, &c);
+    evaluate_law(pass, at, &c);
     block_memory(&pass->memory, block - pass->first, components * SN_BLOCK, c.T);
     find_piola(pass, &c);
     for (int i = 0; i < SN_BLOCK; i += 4, to += 4 * ITEM)
