@@ -242,6 +242,32 @@ typedef struct sn_continuum_def {
 SN_API sn_springs_def sn_springs_def_default(void);
 SN_API sn_continuum_def sn_continuum_def_default(void);
 
+//---- fibres --------------------------------------------------------------------------------------
+
+/// How the axes of the material run through the body.
+typedef enum sn_fibre_rule {
+    SN_FIBRES_ALIKE,  ///< one direction in all cells: sn_case.fibre
+    SN_FIBRES_AROUND, ///< in the wall around an axis, at an angle
+    SN_FIBRES_LISTED  ///< given cell by cell
+} sn_fibre_rule;
+
+/// The rule is kept in the case, so that it holds on any mesh: see sn_case_axes_field(). Around an
+/// axis, with n the normal of the wall, c the direction around the axis and l = n x c along the
+/// wall, the fibre is cos(angle) c + sin(angle) l.
+typedef struct sn_fibres {
+    sn_fibre_rule rule;
+    double sheet[3];   ///< alike: the second axis, made orthogonal to the fibre; zero: chosen
+    double axis[3];    ///< around: direction of the axis, any length
+    double through[3]; ///< around: a point of the axis, m
+    double angle[2]; ///< around: at the inner and the outer wall, linear in the depth between, rad
+    int wall[2];     ///< around: surfaces of the inner and the outer wall, for depth and normal;
+                     ///< both -1: the normal points away from the axis, the angle is the same
+    bool sheet_normal; ///< around: the second axis is n, else it is in the wall, across the fibre
+    int count;         ///< listed: the mesh's cells
+    double *listed;    ///< listed: fibre and second axis (zero: chosen), any length, owned
+                       ///<                                                      (count x 6)
+} sn_fibres;
+
 //---- case ----------------------------------------------------------------------------------------
 
 /// Everything a solver needs to know. Owns all it points to.
@@ -252,6 +278,7 @@ typedef struct sn_case {
     bool has_shape;
     sn_tissue *tissue; ///<                                    (mesh->region_count)
     double fibre[3];   ///< direction in every cell, unit length; zero where none is given
+    sn_fibres fibres;  ///< second axis, or the rule of fibres that turn from cell to cell
     double gravity[3]; ///< m/s2
     int support_count, load_count, tool_count, probe_count;
     sn_support *support;
@@ -272,7 +299,8 @@ SN_API void sn_case_destroy(sn_case *c); // NULL is allowed
 /// The same case on another mesh with the same surfaces and regions (by index). Takes the mesh
 /// unless it fails. Everything else is copied, so both may be destroyed; has_shape stays where the
 /// mesh has as many nodes and cells as before, else it is cleared. Cuts by a region take the cells
-/// that the region has on the new mesh.
+/// that the region has on the new mesh. Listed fibres go from the cell that holds the middle of the
+/// new one (or is nearest to it).
 /// @return SN_OK, SN_E_DEFINITION (regions or surfaces differ; cuts of numbered cells on a mesh
 /// with another number of cells), SN_E_MEMORY.
 SN_API sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy);
@@ -302,8 +330,15 @@ SN_API sn_status sn_case_cut_cells(const sn_case *c, int k, int **cells, int *co
 /// probe NAME_ux NAME_uy NAME_uz [m], for a reaction or a tool NAME_fx NAME_fy NAME_fz [N].
 SN_API sn_status sn_case_history_columns(const sn_case *c, sn_record *history);
 /// Material axes: rotation whose first row is the fibre (identity where there is none); the second
-/// is the coordinate axis that follows the fibre's largest component, made orthogonal.
+/// is the sheet, or else the coordinate axis that follows the fibre's largest component, made
+/// orthogonal. Of fibres that are alike.
 SN_API void sn_case_axes(const sn_case *c, double axes[9]);
+/// Material axes of every cell. Where they are the same in all cells whose law has fibres, *field
+/// is NULL and `axes` holds them; else *field is sn_alloc'd for the caller, the identity in the
+/// other cells, and `axes` is the identity. No law with fibres: NULL and the identity.
+/// @param field  rotations as of sn_case_axes()                     (*field: cells x 9)
+/// @return SN_OK, SN_E_DEFINITION (a cell on the axis, walls that touch), SN_E_MEMORY.
+SN_API sn_status sn_case_axes_field(const sn_case *c, double axes[9], double **field);
 /// Where a material point is: cell and barycentric weights. Points up to 1e-6 of the body's size
 /// outside are taken to the nearest cell. @return SN_OK, SN_E_DEFINITION (outside).
 SN_API sn_status sn_mesh_locate(const sn_mesh *mesh, const double point[3], int *cell,

@@ -38,8 +38,8 @@ static void scatter_forces(const sn_fe_space *s, int batch, const sn_fe_work *wo
                            double *residual) {
     int width = s->batch_cells, nodes = s->element.nodes;
     const int *node = s->node + (size_t)batch * (size_t)(nodes * width);
-    const double *R = s->axes;
     for (int c = 0; c < s->batch_count[batch]; c++) {
+        const double *R = sn_fe_axes(s, batch, c);
         for (int a = 0; a < nodes; a++) {
             const double *f = work->force + 3 * a * width + c;
             double v[3] = {f[0], f[width], f[2 * width]};
@@ -222,6 +222,14 @@ static void mix(const sn_fe_space *s, const sn_fe_material *m, int q, int first,
                 work->M[4 * a + b][c] += soft * e->lambda[q][a] * e->lambda[q][b] * weight[c];
 }
 
+/// Where the tangent of one cell goes.
+typedef struct target {
+    const sn_fe_matrix *matrix;
+    const int *offset;
+    const double *axes; ///< Nullable: not rotated
+    int lane, block[SN_FE_BLOCKS];
+} target;
+
 // R^T k R: from material axes to space.
 static void turn(const double *R, double *k) {
     double half[9];
@@ -233,33 +241,32 @@ static void turn(const double *R, double *k) {
             k[3 * i + j] = R[i] * half[j] + R[3 + i] * half[3 + j] + R[6 + i] * half[6 + j];
 }
 
-static void scatter_displacements(const sn_fe_space *s, const double (*K)[9 * L], int stride,
-                                  int lane, const int *block, const int *offset,
-                                  const sn_fe_matrix *matrix) {
-    int nodes = s->element.nodes, blocks = matrix->pattern->cell_blocks;
+static void scatter_displacements(int nodes, const double (*K)[9 * L], int stride,
+                                  const target *t) {
+    int blocks = t->matrix->pattern->cell_blocks;
     for (int a = 0; a < nodes; a++)
         for (int b = 0; b < nodes; b++) {
             double k[9];
-            const double *from = K[a <= b ? a * stride + b : b * stride + a] + lane;
+            const double *from = K[a <= b ? a * stride + b : b * stride + a] + t->lane;
             for (int i = 0; i < 3; i++)
                 for (int j = 0; j < 3; j++)
                     k[3 * i + j] = from[(a <= b ? 3 * i + j : 3 * j + i) * L];
-            if (s->rotated) turn(s->axes, k);
-            sn_fe_matrix_add(matrix, block[a], block[b], offset[a * blocks + b], k);
+            if (t->axes) turn(t->axes, k);
+            sn_fe_matrix_add(t->matrix, t->block[a], t->block[b], t->offset[a * blocks + b], k);
         }
 }
 
-static void scatter_pressures(const sn_fe_space *s, const sn_fe_work *work, int lane,
-                              const int *block, const int *offset, const sn_fe_matrix *matrix) {
-    int nodes = s->element.nodes, blocks = matrix->pattern->cell_blocks;
-    const double *R = s->axes;
+static void scatter_pressures(int nodes, const sn_fe_work *work, const target *t) {
+    const sn_fe_matrix *matrix = t->matrix;
+    const int *block = t->block, *offset = t->offset, blocks = matrix->pattern->cell_blocks;
+    const double *R = t->axes;
     for (int b = 0; b < 4; b++) {
         int pressure = nodes + b;
         for (int a = 0; a < nodes; a++) {
-            const double *from = work->L[4 * a + b] + lane;
+            const double *from = work->L[4 * a + b] + t->lane;
             double v[3] = {from[0], from[L], from[2 * L]}, k[3], column[9] = {0}, row[9] = {0};
             for (int i = 0; i < 3; i++)
-                k[i] = s->rotated ? R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2] : v[i];
+                k[i] = R ? R[i] * v[0] + R[3 + i] * v[1] + R[6 + i] * v[2] : v[i];
             for (int i = 0; i < 3; i++) {
                 column[3 * i] = k[i];
                 row[i] = k[i];
@@ -269,7 +276,7 @@ static void scatter_pressures(const sn_fe_space *s, const sn_fe_work *work, int 
             sn_fe_matrix_add(matrix, block[pressure], block[a], offset[pressure * blocks + a], row);
         }
         for (int a = 0; a < 4; a++) {
-            const double k[9] = {work->M[4 * a + b][lane]};
+            const double k[9] = {work->M[4 * a + b][t->lane]};
             sn_fe_matrix_add(matrix, block[nodes + a], block[pressure],
                              offset[(nodes + a) * blocks + pressure], k);
         }
@@ -291,15 +298,18 @@ void sn_fe_cell_tangent(const sn_fe_space *s, const sn_fe_material *m, int batch
             if (!linear) mix(s, m, q, first, work);
         }
         for (int lane = 0; lane < L && first + lane < s->batch_count[batch]; lane++) {
-            int block[SN_FE_BLOCKS], at = first + lane;
-            for (int k = 0; k < blocks; k++) block[k] = sn_fe_cell_block(s, batch, at, k);
-            const int *offset = matrix->pattern->offset +
-                                (size_t)(batch * s->batch_cells + at) * (size_t)(blocks * blocks);
-            scatter_displacements(s,
+            int at = first + lane;
+            target t = {.matrix = matrix,
+                        .offset = matrix->pattern->offset +
+                                  (size_t)(batch * s->batch_cells + at) * (size_t)(blocks * blocks),
+                        .axes = s->rotated ? sn_fe_axes(s, batch, at) : NULL,
+                        .lane = lane};
+            for (int k = 0; k < blocks; k++) t.block[k] = sn_fe_cell_block(s, batch, at, k);
+            scatter_displacements(s->element.nodes,
                                   linear ? (const double(*)[9 * L]) work->corner
                                          : (const double(*)[9 * L]) work->K,
-                                  linear ? 4 : SN_FE_NODES, lane, block, offset, matrix);
-            if (s->element.mixed) scatter_pressures(s, work, lane, block, offset, matrix);
+                                  linear ? 4 : SN_FE_NODES, &t);
+            if (s->element.mixed) scatter_pressures(s->element.nodes, work, &t);
         }
     }
 }

@@ -13,9 +13,7 @@ static const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
 //---- fields -------------------------------------------------------------------------------------
 
 // R^T a R for symmetric a: from material axes to space.
-static void turn(const sn_fe_space *s, double a[6]) {
-    if (!s->rotated) return;
-    const double *R = s->axes;
+static void turn(const double *R, double a[6]) {
     double out[6];
     for (int k = 0; k < 6; k++) {
         out[k] = 0.0;
@@ -61,8 +59,8 @@ static void average_cell(const sn_fe_problem *p, int batch, int at, sn_fe_measur
         energy += w * v->W[n];
         *extra -= w * ((sigma[0] + sigma[1] + sigma[2]) / 3.0 - (s->element.mixed ? v->p[n] : 0.0));
     }
-    turn(s, strain);
-    turn(s, stress);
+    if (s->rotated) turn(sn_fe_axes(s, batch, at), strain);
+    if (s->rotated) turn(sn_fe_axes(s, batch, at), stress);
     memcpy(m->strain + 6 * cell, strain, sizeof strain);
     memcpy(m->stress + 6 * cell, stress, sizeof stress);
     m->energy[cell] = energy;
@@ -93,15 +91,17 @@ void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *
 }
 
 sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_output *output) {
-    const sn_field fields[] = {
+    sn_field fields[7] = {
         {"displacement", "m", SN_ON_NODES, 3, m->displacement},
         {"pressure", "Pa", SN_ON_NODES, 1, m->pressure},
         {"green_strain", "1", SN_ON_CELLS, 6, m->strain},
         {"cauchy_stress", "Pa", SN_ON_CELLS, 6, m->stress},
         {"energy_density", "J/m3", SN_ON_CELLS, 1, m->energy},
-        {"velocity", "m/s", SN_ON_NODES, 3, p->inertia ? p->inertia->v : NULL}, // corners first
     };
-    int count = (int)(sizeof fields / sizeof *fields) - (p->inertia ? 0 : 1);
+    int count = 5;
+    if (p->inertia) // corners first
+        fields[count++] = (sn_field){"velocity", "m/s", SN_ON_NODES, 3, p->inertia->v};
+    if (p->space->rotated) fields[count++] = (sn_field){"fibre", "1", SN_ON_CELLS, 3, m->fibre};
     const sn_frame frame = {p->level.time, count, fields};
     return output->frame(output->context, &frame);
 }
@@ -170,12 +170,22 @@ static sn_status find_probes(const sn_fe_problem *p, sn_fe_measure *m) {
     return SN_OK;
 }
 
+// The fibre at rest, 0 in cells without.
+static void fill_fibres(const sn_fe_problem *p, double *fibre) {
+    const sn_fe_space *s = p->space;
+    for (int b = 0; b < s->batches && s->rotated; b++)
+        for (int at = 0; at < s->batch_count[b]; at++)
+            if (p->c->tissue[s->batch_region[b]].law->fibres)
+                memcpy(fibre + 3 * (size_t)s->slot[b * s->batch_cells + at], sn_fe_axes(s, b, at),
+                       3 * sizeof *fibre);
+}
+
 void sn_fe_measure_destroy(sn_fe_measure *m, const sn_case *c) {
     if (!m) return;
     for (int k = 0; m->reaction && k < c->probe_count; k++) sn_free(m->reaction[k]);
-    void *const parts[] = {m->displacement, m->pressure,    m->strain,   m->stress,
-                           m->energy,       m->row,         m->reaction, m->reaction_count,
-                           m->point_cell,   m->point_weight};
+    void *const parts[] = {m->displacement, m->pressure,     m->strain,   m->stress,
+                           m->energy,       m->row,          m->reaction, m->reaction_count,
+                           m->point_cell,   m->point_weight, m->fibre};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(m);
 }
@@ -194,14 +204,16 @@ sn_status sn_fe_measure_create(const sn_fe_problem *p, const sn_record *history,
     m->strain = sn_alloc(6 * cells, sizeof *m->strain);
     m->stress = sn_alloc(6 * cells, sizeof *m->stress);
     m->energy = sn_alloc(cells, sizeof *m->energy);
+    m->fibre = sn_alloc(3 * cells, sizeof *m->fibre);
     m->row = sn_alloc((size_t)m->columns, sizeof *m->row);
     m->reaction = sn_alloc(probes, sizeof *m->reaction);
     m->reaction_count = sn_alloc(probes, sizeof *m->reaction_count);
     m->point_cell = sn_alloc(probes, sizeof *m->point_cell);
     m->point_weight = sn_alloc(probes, sizeof *m->point_weight);
-    if (!m->displacement || !m->pressure || !m->strain || !m->stress || !m->energy || !m->row ||
-        !m->reaction || !m->reaction_count || !m->point_cell || !m->point_weight)
+    if (!m->displacement || !m->pressure || !m->strain || !m->stress || !m->energy || !m->fibre ||
+        !m->row || !m->reaction || !m->reaction_count || !m->point_cell || !m->point_weight)
         goto fail;
+    if (fields) fill_fibres(p, m->fibre);
     SN_TRY_GOTO(status, find_probes(p, m));
     return SN_OK;
 fail:

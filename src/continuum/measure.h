@@ -14,6 +14,7 @@ typedef struct sn_fe_measure {
     double *strain;       ///< (cells x 6)
     double *stress;       ///< (cells x 6)
     double *energy;       ///< (cells)
+    double *fibre;        ///< at rest                      (cells x 3)
     double *row;          ///< a row of the history
     int columns;
     int **reaction; ///< nodes of the surface of each reaction probe  (probes)

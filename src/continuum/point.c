@@ -10,9 +10,9 @@ enum { N = SN_FE_POINTS };
 void sn_fe_gather(const sn_fe_space *s, int batch, const double *x, double *u) {
     int width = s->batch_cells, nodes = s->element.nodes;
     const int *node = s->node + (size_t)batch * (size_t)(nodes * width);
-    const double *R = s->axes;
     for (int a = 0; a < nodes; a++)
         for (int c = 0; c < width; c++) {
+            const double *R = sn_fe_axes(s, batch, c);
             const double *from = x + 3 * (size_t)node[a * width + c];
             double *to = u + 3 * a * width + c;
             if (s->rotated) {

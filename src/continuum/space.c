@@ -49,8 +49,8 @@ static sn_status make_nodes(sn_fe_space *s, const sn_mesh *mesh) {
 
 //---- cells --------------------------------------------------------------------------------------
 
-// Gradients of the barycentric coordinates in material axes, and the volume.
-static double cell_gradients(const sn_fe_space *s, const sn_mesh *mesh, int cell, double g[4][3]) {
+// Gradients of the barycentric coordinates in material axes (NULL: of space), and the volume.
+static double cell_gradients(const sn_mesh *mesh, int cell, const double *axes, double g[4][3]) {
     const double *x[4];
     double side[3][3], raw[4][3];
     for (int k = 0; k < 4; k++) x[k] = mesh->node + 3 * mesh->cell[4 * cell + k];
@@ -62,17 +62,22 @@ static double cell_gradients(const sn_fe_space *s, const sn_mesh *mesh, int cell
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 3; i++) {
             double v = 0.0;
-            for (int j = 0; j < 3; j++) v += s->axes[3 * i + j] * raw[k][j];
-            g[k][i] = (s->rotated ? v : raw[k][i]) / six;
+            for (int j = 0; j < 3 && axes; j++) v += axes[3 * i + j] * raw[k][j];
+            g[k][i] = (axes ? v : raw[k][i]) / six;
         }
     return six / 6.0;
 }
 
-static void place_cell(sn_fe_space *s, const sn_mesh *mesh, int batch, int at, int cell) {
+static void place_cell(sn_fe_space *s, const sn_mesh *mesh, const double *field, int batch, int at,
+                       int cell) {
     int width = s->batch_cells;
+    if (field)
+        memcpy(s->turned + 9 * (size_t)(batch * width + at), field + 9 * (size_t)cell,
+               9 * sizeof *field);
     double g[4][3];
     s->slot[batch * width + at] = cell;
-    s->volume[batch * width + at] = cell_gradients(s, mesh, cell, g);
+    const double *axes = s->rotated ? sn_fe_axes(s, batch, at) : NULL;
+    s->volume[batch * width + at] = cell_gradients(mesh, cell, axes, g);
     for (int k = 0; k < 4; k++)
         for (int i = 0; i < 3; i++)
             s->gradient[((size_t)batch * 12 + (size_t)(3 * k + i)) * (size_t)width + (size_t)at] =
@@ -85,7 +90,7 @@ static void place_cell(sn_fe_space *s, const sn_mesh *mesh, int batch, int at, i
                                                    corner[sn_fe_cell_edge[a - 4][1]]);
 }
 
-static sn_status alloc_batches(sn_fe_space *s) {
+static sn_status alloc_batches(sn_fe_space *s, bool turned) {
     size_t batches = (size_t)s->batches, places = batches * (size_t)s->batch_cells;
     s->batch_region = sn_alloc(batches, sizeof *s->batch_region);
     s->batch_count = sn_alloc(batches, sizeof *s->batch_count);
@@ -94,10 +99,12 @@ static sn_status alloc_batches(sn_fe_space *s) {
     s->gradient = sn_alloc(places * 12, sizeof *s->gradient);
     s->volume = sn_alloc(places, sizeof *s->volume);
     bool good = s->batch_region && s->batch_count && s->slot && s->node && s->gradient && s->volume;
+    if (good && turned) good = (s->turned = sn_alloc(9 * places, sizeof *s->turned)) != NULL;
     return good ? SN_OK : SN_E_MEMORY;
 }
 
-static sn_status make_batches(sn_fe_space *s, const sn_mesh *mesh) {
+// field: axes of the cells of the mesh, NULL where all have s->axes
+static sn_status make_batches(sn_fe_space *s, const sn_mesh *mesh, const double *field) {
     int width = s->batch_cells = SN_FE_POINTS / s->element.points;
     int *size = sn_alloc((size_t)mesh->region_count, sizeof *size);
     int *open = sn_alloc((size_t)mesh->region_count, sizeof *open); // batch being filled
@@ -108,16 +115,16 @@ static sn_status make_batches(sn_fe_space *s, const sn_mesh *mesh) {
         open[r] = s->batches;
         s->batches += (size[r] + width - 1) / width;
     }
-    SN_TRY_GOTO(status, alloc_batches(s));
+    SN_TRY_GOTO(status, alloc_batches(s, field != NULL));
     for (int c = 0; c < mesh->cell_count; c++) {
         int region = mesh->region[c], batch = open[region];
         s->batch_region[batch] = region;
-        place_cell(s, mesh, batch, s->batch_count[batch], c);
+        place_cell(s, mesh, field, batch, s->batch_count[batch], c);
         if (++s->batch_count[batch] == width) open[region]++;
     }
     for (int b = 0; b < s->batches; b++)
         for (int at = s->batch_count[b]; at < width; at++)
-            place_cell(s, mesh, b, at, s->slot[b * width + s->batch_count[b] - 1]);
+            place_cell(s, mesh, field, b, at, s->slot[b * width + s->batch_count[b] - 1]);
 fail:
     sn_free(size);
     sn_free(open);
@@ -233,24 +240,28 @@ void sn_fe_space_prescribed(const sn_fe_space *s, const sn_case *c, double t, do
 
 void sn_fe_space_destroy(sn_fe_space *s) {
     if (!s) return;
-    void *const parts[] = {s->rest, s->edge, s->edge_at,  s->batch_region, s->batch_count,
-                           s->slot, s->node, s->gradient, s->volume,       s->fixed};
+    void *const parts[] = {s->rest,        s->edge,  s->edge_at, s->batch_region,
+                           s->batch_count, s->slot,  s->node,    s->gradient,
+                           s->volume,      s->fixed, s->turned};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(s);
 }
 
 sn_status sn_fe_space_create(const sn_case *c, sn_fe_space **space) {
     sn_status status = SN_OK;
+    double *field = NULL;
     sn_fe_space *s = *space = sn_alloc(1, sizeof *s);
     if (!s) return SN_E_MEMORY;
     sn_fe_element_init(c->continuum.element, &s->element);
     for (int r = 0; r < c->mesh->region_count; r++) s->rotated |= c->tissue[r].law->fibres;
-    sn_case_axes(c, s->axes);
+    SN_TRY_GOTO(status, sn_case_axes_field(c, s->axes, &field));
     SN_TRY_GOTO(status, make_nodes(s, c->mesh));
-    SN_TRY_GOTO(status, make_batches(s, c->mesh));
+    SN_TRY_GOTO(status, make_batches(s, c->mesh, field));
     SN_TRY_GOTO(status, make_fixed(s, c));
+    sn_free(field);
     return SN_OK;
 fail:
+    sn_free(field);
     sn_fe_space_destroy(s);
     *space = NULL;
     return status;

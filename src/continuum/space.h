@@ -24,7 +24,8 @@ typedef struct sn_fe_space {
     int *edge_at; ///< first edge that starts at a corner           (corners + 1)
     int edge_count;
     bool rotated;   ///< a tissue has fibres: cells work in material axes
-    double axes[9]; ///< rotation from space to material axes
+    double axes[9]; ///< rotation from space to material axes, where all cells have the same
+    double *turned; ///< Nullable: rotation of each place, instead   (batches x cells x 9)
     int batch_cells, batches;
     int *batch_region;        ///<                                         (batches)
     int *batch_count;         ///<                                         (batches)
@@ -51,6 +52,11 @@ void sn_fe_space_destroy(sn_fe_space *space); // NULL is allowed
 /// First unknown of a block: blocks are the nodes, then the pressures.
 static inline int sn_fe_block_dof(const sn_fe_space *s, int block) {
     return block < s->nodes ? 3 * block : 2 * s->nodes + block;
+}
+/// Rotation from space to material axes of cell `at` of a batch.
+static inline const double *sn_fe_axes(const sn_fe_space *s, int batch, int at) {
+    return s->turned ? s->turned + 9 * ((size_t)batch * (size_t)s->batch_cells + (size_t)at)
+                     : s->axes;
 }
 /// Index of the midside node between two corners. The edge must exist.
 int sn_fe_space_midside(const sn_fe_space *s, int a, int b);

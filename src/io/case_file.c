@@ -5,8 +5,6 @@
 // see (contradicting loads, a probe outside the body) is left to sn_case_check().
 #include "io/case_file.h"
 
-#include <math.h>
-
 #define FRAMES_MAX 1e6 // most outputs of a run: a typing error should not fill the disk
 
 static sn_status read_positive(const sn_yaml *node, const char *si_unit, double *value) {
@@ -140,28 +138,12 @@ static sn_status read_time(const sn_yaml *node, sn_case *c) {
     return SN_OK;
 }
 
-static sn_status read_fibres(const sn_yaml *node, sn_case *c) {
-    double v[3];
-    if (node->kind != SN_YAML_LIST)
-        return sn_yaml_expected(node, SN_E_UNSUPPORTED,
-                                "one direction such as [1, 0, 0] (rules and files for fibres are "
-                                "not supported)");
-    SN_TRY(sn_yaml_quantities(node, "1", 3, v));
-    double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
-    if (!(largest > 0.0)) return sn_yaml_fail(node, SN_E_RANGE, "the direction has no length");
-    for (int i = 0; i < 3; i++) v[i] /= largest; // no overflow in the squares
-    double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    for (int i = 0; i < 3; i++) c->fibre[i] = v[i] / length;
-    return SN_OK;
-}
-
 static sn_status read_settings(const sn_yaml *root, sn_case *c) {
     const sn_yaml *node;
     SN_TRY(sn_yaml_need(root, "case", &node));
     SN_TRY(sn_yaml_copy(node, "the name of the case", c->name, sizeof c->name));
     SN_TRY(sn_yaml_need(root, "time", &node));
     SN_TRY(read_time(node, c));
-    if ((node = sn_yaml_get(root, "fibres"))) SN_TRY(read_fibres(node, c));
     if ((node = sn_yaml_get(root, "gravity")))
         SN_TRY(sn_yaml_quantities(node, "m/s2", 3, c->gravity));
     if ((node = sn_yaml_get(root, "springs"))) SN_TRY(sn_case_read_springs(node, &c->springs));
@@ -182,6 +164,7 @@ static sn_status read_case(const sn_yaml *root, sn_case *c) {
     SN_TRY(sn_yaml_need(root, "mesh", &node));
     SN_TRY(sn_case_read_mesh(node, c));
     SN_TRY(sn_case_read_tissues(sn_yaml_get(root, "tissue"), c));
+    if ((node = sn_yaml_get(root, "fibres"))) SN_TRY(sn_case_read_fibres(node, c));
     if ((node = sn_yaml_get(root, "supports"))) SN_TRY(sn_case_read_supports(node, c));
     if ((node = sn_yaml_get(root, "loads"))) SN_TRY(sn_case_read_loads(node, c));
     if ((node = sn_yaml_get(root, "tools"))) SN_TRY(sn_case_read_tools(node, c));

@@ -8,6 +8,8 @@
 sn_status sn_case_read_mesh(const sn_yaml *node, sn_case *c);
 /// `tissue`: one file, or a file for every region of the mesh.
 sn_status sn_case_read_tissues(const sn_yaml *node, sn_case *c);
+/// `fibres`; the mesh is there already.
+sn_status sn_case_read_fibres(const sn_yaml *node, sn_case *c);
 /// `supports`, `loads`, `tools`, `probes`, `cuts`: lists; the mesh is there already.
 sn_status sn_case_read_supports(const sn_yaml *node, sn_case *c);
 sn_status sn_case_read_loads(const sn_yaml *node, sn_case *c);

@@ -47,6 +47,7 @@ void sn_case_destroy(sn_case *c) {
     sn_free(c->probe);
     for (int i = 0; i < c->cut_count; i++) sn_free(c->cut[i].cell);
     sn_free(c->cut);
+    sn_free(c->fibres.listed);
     sn_free(c);
 }
 
@@ -116,6 +117,7 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     to->load = NULL;
     to->tool = NULL;
     to->cut = NULL;
+    to->fibres.listed = NULL;
     to->tissue = copy_array(c->tissue, c->mesh->region_count, sizeof *c->tissue);
     to->support = copy_array(c->support, c->support_count, sizeof *c->support);
     to->probe = copy_array(c->probe, c->probe_count, sizeof *c->probe);
@@ -125,6 +127,7 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     }
     SN_TRY_GOTO(status, copy_loads_and_tools(c, to));
     SN_TRY_GOTO(status, copy_cuts(c, mesh, to));
+    SN_TRY_GOTO(status, sn_fibres_on_mesh(&c->fibres, c->mesh, mesh, &to->fibres));
     to->has_shape = c->has_shape && mesh->node_count == c->mesh->node_count &&
                     mesh->cell_count == c->mesh->cell_count;
     to->mesh = mesh;
@@ -196,24 +199,7 @@ sn_status sn_case_history_columns(const sn_case *c, sn_record *history) {
     return SN_OK;
 }
 
-//---- axes and stiffness --------------------------------------------------------------------------
-
-void sn_case_axes(const sn_case *c, double axes[9]) {
-    double *first = axes, *second = axes + 3, *third = axes + 6;
-    memset(axes, 0, 9 * sizeof *axes);
-    double length = norm3(c->fibre);
-    int largest = 0;
-    for (int i = 0; i < 3; i++) {
-        first[i] = length > 0 ? c->fibre[i] / length : (double)(i == 0);
-        if (fabs(first[i]) > fabs(first[largest])) largest = i;
-    }
-    // the second row: the coordinate axis after the largest component, made orthogonal
-    int next = (largest + 1) % 3;
-    for (int i = 0; i < 3; i++) second[i] = (double)(i == next) - first[next] * first[i];
-    length = norm3(second);
-    for (int i = 0; i < 3; i++) second[i] /= length;
-    cross3(first, second, third);
-}
+//---- stiffness -----------------------------------------------------------------------------------
 
 double sn_case_penalty(const sn_case *c) {
     double stiffest = 0;

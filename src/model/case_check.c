@@ -32,7 +32,7 @@ static sn_status check_tissue(const sn_case *c, const sn_tissue *tissue) {
                        "the uniaxial law \"%s\" needs poissons_ratio in a "
                        "three-dimensional body: give it, or take a solid law",
                        law->name);
-    if (law->fibres && !(norm3(c->fibre) > 0))
+    if (law->fibres && c->fibres.rule == SN_FIBRES_ALIKE && !(norm3(c->fibre) > 0))
         return sn_fail(
             SN_E_DEFINITION,
             "law \"%s\" has fibres: give their direction under \"fibres\", such as [1, 0, 0]",
@@ -46,9 +46,7 @@ static sn_status check_tissue(const sn_case *c, const sn_tissue *tissue) {
 static sn_status check_tissues(const sn_case *c) {
     if (!finite3(c->fibre) || !finite3(c->gravity))
         return sn_fail(SN_E_RANGE, "the fibre direction and gravity must be finite numbers");
-    if (norm3(c->fibre) > 0 && fabs(norm3(c->fibre) - 1) > 1e-9)
-        return sn_fail(SN_E_RANGE, "the fibre direction has length %g: 1 expected",
-                       norm3(c->fibre));
+    SN_TRY(sn_fibres_check(c));
     for (int r = 0; r < c->mesh->region_count; r++) {
         sn_status status = check_tissue(c, &c->tissue[r]);
         if (status != SN_OK)

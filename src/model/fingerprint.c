@@ -65,10 +65,20 @@ static uint64_t mix_probe(uint64_t hash, const sn_probe *p) {
     return p->kind == SN_PROBE_POINT ? sn_hash(hash, p->point, sizeof p->point) : hash;
 }
 
+static uint64_t mix_fibres(uint64_t hash, const sn_case *c) {
+    const sn_fibres *f = &c->fibres;
+    const int what[] = {(int)f->rule, f->wall[0], f->wall[1], f->sheet_normal};
+    hash = sn_hash(sn_hash(hash, c->fibre, sizeof c->fibre), what, sizeof what);
+    hash = sn_hash(hash, f->sheet, sizeof f->sheet);
+    hash = sn_hash(hash, f->axis, sizeof f->axis);
+    hash = sn_hash(hash, f->through, sizeof f->through);
+    hash = sn_hash(hash, f->angle, sizeof f->angle);
+    return f->listed ? sn_hash(hash, f->listed, 6 * (size_t)f->count * sizeof *f->listed) : hash;
+}
+
 uint64_t sn_case_fingerprint(const sn_case *c) {
     const int counts[] = {c->support_count, c->load_count, c->tool_count, c->probe_count};
-    uint64_t hash = sn_hash(SN_HASH_START, counts, sizeof counts);
-    hash = sn_hash(hash, c->fibre, sizeof c->fibre);
+    uint64_t hash = mix_fibres(sn_hash(SN_HASH_START, counts, sizeof counts), c);
     hash = sn_hash(hash, c->gravity, sizeof c->gravity);
     hash = mix_mesh(hash, c->mesh);
     for (int k = 0; k < c->mesh->region_count; k++) hash = mix_tissue(hash, &c->tissue[k]);

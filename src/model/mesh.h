@@ -27,5 +27,16 @@ void sn_triangle_normal(const sn_mesh *mesh, const int node[3], double normal[3]
 void sn_mesh_box(const sn_mesh *mesh, double low[3], double high[3]);
 /// Diagonal of the box around the mesh, m.
 double sn_mesh_size(const sn_mesh *mesh);
+/// The middle of a cell, m.
+void sn_mesh_middle(const sn_mesh *mesh, int cell, double middle[3]);
+/// Barycentric weights of a point in a cell; returns how far it is inside the nearest of the four
+/// planes, m (negative outside).
+double sn_mesh_depth(const sn_mesh *mesh, int cell, const double point[3], double weight[4]);
+/// What of `from` holds on another mesh: the rule, or the list cell by cell. @return SN_OK,
+/// SN_E_MEMORY.
+sn_status sn_fibres_on_mesh(const sn_fibres *from, const sn_mesh *mesh, const sn_mesh *other,
+                            sn_fibres *to);
+/// Checks of fibres of a case. @return SN_OK, SN_E_DEFINITION, SN_E_RANGE.
+sn_status sn_fibres_check(const sn_case *c);
 /// As sn_mesh_locate(), without a text. @return false where the point is outside.
 bool sn_mesh_find_point(const sn_mesh *mesh, const double point[3], int *cell, double weight[4]);

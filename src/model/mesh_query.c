@@ -117,10 +117,7 @@ fail:
     return status;
 }
 
-// Barycentric weights of a point in a cell, and how far it is inside the nearest of the four
-// planes, m (negative outside).
-static double depth_in_cell(const sn_mesh *mesh, int cell, const double point[3],
-                            double weight[4]) {
+double sn_mesh_depth(const sn_mesh *mesh, int cell, const double point[3], double weight[4]) {
     double volume = sn_mesh_cell_volume(mesh, cell), depth = (double)INFINITY;
     for (int k = 0; k < 4; k++) {
         int node[3];
@@ -133,6 +130,13 @@ static double depth_in_cell(const sn_mesh *mesh, int cell, const double point[3]
         depth = fmin(depth, inwards / norm3(normal));
     }
     return depth;
+}
+
+void sn_mesh_middle(const sn_mesh *mesh, int cell, double middle[3]) {
+    const int *v = mesh->cell + 4 * (size_t)cell;
+    for (size_t i = 0; i < 3; i++)
+        middle[i] = 0.25 * (mesh->node[3 * (size_t)v[0] + i] + mesh->node[3 * (size_t)v[1] + i] +
+                            mesh->node[3 * (size_t)v[2] + i] + mesh->node[3 * (size_t)v[3] + i]);
 }
 
 static bool near_cell(const sn_mesh *mesh, int cell, const double point[3], double margin) {
@@ -155,7 +159,7 @@ bool sn_mesh_find_point(const sn_mesh *mesh, const double point[3], int *cell, d
     for (int c = 0; c < mesh->cell_count; c++) {
         double w[4], depth;
         if (!near_cell(mesh, c, point, margin)) continue;
-        depth = depth_in_cell(mesh, c, point, w);
+        depth = sn_mesh_depth(mesh, c, point, w);
         if (depth < best) continue;
         best = depth;
         *cell = c;

@@ -13,6 +13,14 @@ typedef struct sn_touch {
 
 /// The nearest point of a closed surface of triangles to r.
 void sn_tool_surface_near(const sn_tool_surface *surface, const double r[3], sn_touch *touch);
+/// A surface that need not be closed, of any triangles: it only knows how far points are from it.
+/// @param node  (… x 3)
+/// @param face  nodes of each triangle                               (triangles x 3)
+/// @return SN_OK, SN_E_MESH (no triangles), SN_E_MEMORY.
+sn_status sn_tool_surface_open(int triangles, const int *face, const double *node,
+                               sn_tool_surface **surface);
+/// Distance of a point from the surface, m.
+double sn_tool_surface_distance(const sn_tool_surface *surface, const double r[3]);
 /// Corners of the surface, m, in the tool's axes                          (*count x 3).
 const double *sn_tool_surface_corners(const sn_tool_surface *surface, int *count);
 /// Largest distance of a corner from the origin, m.

@@ -24,7 +24,7 @@ struct sn_tool_surface {
     int corners, triangles, boxes;
     double *corner;        // m                                    (corners x 3)
     int *face;             // corners of each triangle, tree order (triangles x 3)
-    double *face_normal;   // unit                                 (triangles x 3)
+    double *face_normal;   // unit; NULL with the others: open     (triangles x 3)
     double *edge_normal;   // of edges 01 12 20, any length        (triangles x 3 x 3)
     double *corner_normal; // any length                           (corners x 3)
     box *box;              // the first holds all
@@ -257,6 +257,7 @@ static sn_status grow_tree(sn_tool_surface *s) {
     bound(s, items, 0, n, &s->box[0]);
     split(s, items, 0);
     SN_TRY_GOTO(status, reorder(items, n, 3 * sizeof *s->face, s->face));
+    if (!s->face_normal) goto fail; // an open one
     SN_TRY_GOTO(status, reorder(items, n, 3 * sizeof(double), s->face_normal));
     SN_TRY_GOTO(status, reorder(items, n, 9 * sizeof(double), s->edge_normal));
 fail:
@@ -286,6 +287,29 @@ sn_status sn_tool_surface_create(int triangles, const double *corner, sn_tool_su
     return SN_OK;
 fail:
     sn_tool_surface_destroy(s);
+    return status;
+}
+
+sn_status sn_tool_surface_open(int triangles, const int *face, const double *node,
+                               sn_tool_surface **surface) {
+    *surface = NULL;
+    double *corner = sn_alloc(9 * (size_t)triangles, sizeof *corner);
+    sn_tool_surface *s = sn_alloc(1, sizeof *s);
+    sn_status status = corner && s ? SN_OK : SN_E_MEMORY;
+    if (status != SN_OK) goto fail;
+    for (size_t i = 0; i < 3 * (size_t)triangles; i++)
+        memcpy(corner + 3 * i, node + 3 * (size_t)face[i], 3 * sizeof *corner);
+    SN_TRY_GOTO(status, join_corners(triangles, corner, s));
+    if (s->triangles < 1) {
+        status = sn_fail(SN_E_MESH, "the surface has no triangle with three corners");
+        goto fail;
+    }
+    SN_TRY_GOTO(status, grow_tree(s));
+    *surface = s;
+    s = NULL;
+fail:
+    sn_tool_surface_destroy(s);
+    sn_free(corner);
     return status;
 }
 
@@ -392,6 +416,10 @@ static nearest find_nearest(const sn_tool_surface *s, const double r[3]) {
         stack[waiting++] = left_first ? left : left + 1;
     }
     return best;
+}
+
+double sn_tool_surface_distance(const sn_tool_surface *s, const double r[3]) {
+    return sqrt(find_nearest(s, r).distance2);
 }
 
 void sn_tool_surface_near(const sn_tool_surface *s, const double r[3], sn_touch *touch) {

@@ -149,11 +149,11 @@ static double twice_held_volume(const sn_net_region *region, const branches *b, 
 }
 
 // D of the matrix, then of matrix and fibres
-static void tangents(const sn_net_region *region, const double E[6], double D[2][21]) {
+static void tangents(const sn_net *net, const sn_net_region *region, int slot, const double E[6],
+                     double D[2][21]) {
     double S[6], fibres[21];
     for (int k = 0; k < region->splits; k++) {
-        const sn_tissue *t = &region->split[k];
-        sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, k ? fibres : D[0]);
+        sn_net_law(net, &region->split[k], slot, 1, E, NULL, S, k ? fibres : D[0]);
     }
     for (int i = 0; i < 21 && region->splits > 1; i++) D[1][i] = D[0][i] + fibres[i];
 }
@@ -170,7 +170,7 @@ static double of_cells(const sn_net *net, const sn_net_region *region, const sn_
         double E[6], D[2][21];
         const double V = sn_net_law_strain(net, m, (int)slot, E);
         if (!(V > 0)) continue;
-        tangents(region, E, D);
+        tangents(net, region, (int)slot, E, D);
         for (int k = first; k < region->splits; k++)
             for (int j = 0; j < b[k].memory->terms; j++) {
                 double twice = twice_held(region, &b[k], D[k], j, n);

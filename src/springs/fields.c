@@ -27,8 +27,28 @@ struct sn_fields {
     double *around;                             ///< volume around each node
     double *growth;                             ///< J - 1 of volume points
     double *edge;    ///< strain, stress, energies of smoothed edges: EDGE_NUMBERS each
+    double *fibre;   ///< at rest, of cells; NULL: no law has any
     double *removed; ///< NULL: nothing can be removed; 1 of cells that were
 };
+
+static const sn_net_region *region_of(const sn_net *net, int slot) {
+    const sn_net_region *r = net->region;
+    while (slot >= (r->cell_block + r->cell_blocks) * SN_BLOCK) r++;
+    return r;
+}
+
+static sn_status set_fibres(const sn_net *net, sn_fields *f) {
+    bool fibres = false;
+    for (int r = 0; r < net->region_count; r++) fibres |= net->region[r].tissue.law->fibres;
+    if (!fibres) return SN_OK;
+    f->fibre = sn_alloc((size_t)net->cells * 3, sizeof *f->fibre);
+    if (!f->fibre) return SN_E_MEMORY;
+    for (size_t e = 0; e < (size_t)net->cells; e++)
+        if (region_of(net, net->cell_slot[e])->tissue.law->fibres)
+            memcpy(f->fibre + 3 * e, net->cell_axes ? net->cell_axes + 9 * e : net->axes,
+                   3 * sizeof *f->fibre);
+    return SN_OK;
+}
 
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
     *fields = NULL;
@@ -52,14 +72,18 @@ sn_status sn_fields_create(const sn_net *net, sn_fields **fields) {
         sn_fields_destroy(f);
         return SN_E_MEMORY;
     }
+    if (set_fibres(net, f) != SN_OK) {
+        sn_fields_destroy(f);
+        return SN_E_MEMORY;
+    }
     *fields = f;
     return SN_OK;
 }
 
 void sn_fields_destroy(sn_fields *f) {
     if (!f) return;
-    void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain,
-                   f->stress,       f->energy,   f->growth,   f->edge,   f->held,   f->removed};
+    void *all[] = {f->displacement, f->velocity, f->pressure, f->around, f->strain, f->stress,
+                   f->energy,       f->growth,   f->edge,     f->held,   f->fibre,  f->removed};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(f);
 }
@@ -193,9 +217,8 @@ static void solid_place(const sn_net *net, const sn_net_region *region, const sn
     double E[6], S[6], W, p = region->bulk * (c->J - 1.0);
     green_strain(c->F, E);
     for (int n = sn_net_first_split(net); n < region->splits; n++) {
-        const sn_tissue *t = &region->split[n];
         const recalled r = recall(net, region, m, kind[n]);
-        sn_law_solid(t->law, t->value, t->terms, 1, E, &W, S, NULL);
+        sn_net_law(net, &region->split[n], slot, 1, E, &W, S, NULL);
         add_energy(energy, sn_split_part(n), W);
         for (size_t k = 0; k < 6; k++) S[k] = remembered(&r, block, k * SN_BLOCK + lane, S[k]);
         add_cauchy(c, S, stress);
@@ -309,12 +332,6 @@ static void find_growth(const sn_net *net, sn_fields *f, const sn_moment *m) {
         if (around[p] > 0) f->growth[p] /= around[p];
 }
 
-static const sn_net_region *region_of(const sn_net *net, int slot) {
-    const sn_net_region *r = net->region;
-    while (slot >= (r->cell_block + r->cell_blocks) * SN_BLOCK) r++;
-    return r;
-}
-
 static void fill_nodes(const sn_net *net, sn_fields *f, const sn_moment *m) {
     for (int i = 0; i < net->nodes; i++)
         for (int d = 0; d < 3; d++) {
@@ -375,14 +392,16 @@ void sn_fields_fill(const sn_net *net, sn_fields *f, const sn_moment *m) {
 }
 
 sn_status sn_fields_emit(const sn_fields *f, double time, const sn_output *output) {
-    const sn_field all[] = {{"displacement", "m", SN_ON_NODES, 3, f->displacement},
-                            {"velocity", "m/s", SN_ON_NODES, 3, f->velocity},
-                            {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
-                            {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
-                            {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
-                            {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy},
-                            {"removed", "1", SN_ON_CELLS, 1, f->removed}};
-    const sn_frame frame = {time, (int)(sizeof all / sizeof *all) - !f->removed, all};
+    sn_field all[8] = {{"displacement", "m", SN_ON_NODES, 3, f->displacement},
+                       {"velocity", "m/s", SN_ON_NODES, 3, f->velocity},
+                       {"pressure", "Pa", SN_ON_NODES, 1, f->pressure},
+                       {"green_strain", "1", SN_ON_CELLS, 6, f->strain},
+                       {"cauchy_stress", "Pa", SN_ON_CELLS, 6, f->stress},
+                       {"energy_density", "J/m3", SN_ON_CELLS, 1, f->energy}};
+    int count = 6;
+    if (f->fibre) all[count++] = (sn_field){"fibre", "1", SN_ON_CELLS, 3, f->fibre};
+    if (f->removed) all[count++] = (sn_field){"removed", "1", SN_ON_CELLS, 1, f->removed};
+    const sn_frame frame = {time, count, all};
     return output->frame(output->context, &frame);
 }
 

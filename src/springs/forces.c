@@ -54,6 +54,7 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->u = call->u;
     memcpy(pass->axes, net->axes, sizeof pass->axes);
     pass->rotated = net->rotated;
+    pass->turn = region->tissue.law->fibres ? data->turn : NULL;
     pass->law = region->tissue.law;
     pass->value = region->tissue.value;
     pass->value_f = region->value_f;

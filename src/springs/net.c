@@ -201,9 +201,12 @@ static sn_status copy_single(sn_net *net) {
     sn_net_data *s = &net->data[SN_SINGLE];
     const size_t cells = (size_t)net->cell_blocks * SN_BLOCK;
     const size_t springs = (size_t)net->spring_blocks * SN_BLOCK, nodes = (size_t)net->nodes * 4;
+    const size_t places =
+        (size_t)(net->rung == SN_RUNG_SMOOTHED ? net->edge_blocks : net->cell_blocks);
     if (net->cell_tiles.count > 0) {
         SN_TRY(to_single(d->gradient, cells * 9, &s->gradient));
         SN_TRY(to_single(d->volume, cells, &s->volume));
+        SN_TRY(to_single(d->turn, 9 * (size_t)SN_BLOCK * places, &s->turn));
     }
     SN_TRY(to_single(d->stiffness, springs, &s->stiffness));
     SN_TRY(single_positions(&net->cell_tiles));
@@ -303,14 +306,11 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->region = sn_alloc((size_t)net->region_count, sizeof *net->region);
     if (!net->node_position || !net->region) return SN_E_MEMORY;
     memcpy(net->node_position, c->mesh->node, (size_t)net->nodes * 3 * sizeof(double));
-    bool fibres = false;
     for (int r = 0; r < net->region_count; r++) {
         net->region[r].tissue = c->tissue[r];
         SN_TRY(set_tissue(c, net, &net->region[r]));
-        fibres = fibres || c->tissue[r].law->fibres;
     }
-    for (int k = 0; k < 9; k++) net->axes[k] = k % 4 == 0;
-    if (fibres) sn_case_axes(c, net->axes);
+    SN_TRY(sn_case_axes_field(c, net->axes, &net->cell_axes));
     for (int k = 0; k < 9; k++) net->rotated = net->rotated || net->axes[k] != (k % 4 == 0);
     return SN_OK;
 }
@@ -321,6 +321,7 @@ static sn_status build(const sn_case *c, sn_net *net) {
     SN_TRY(sn_net_build_cells(c, net));
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(sn_net_build_springs(c, net));
     if (net->rung == SN_RUNG_SMOOTHED) SN_TRY(sn_net_build_edges(c, net));
+    SN_TRY(sn_net_build_turns(net));
     SN_TRY(sn_net_build_tiles(c, net));
     SN_TRY(list_shares(net));
     SN_TRY(set_masses(c, net));
@@ -375,8 +376,8 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
 }
 
 static void destroy_data(sn_net_data *d) {
-    void *all[] = {d->gradient,  d->volume,          d->edge,   d->inverse,
-                   d->stiffness, d->point_stiffness, d->weight, d->inverse_mass};
+    void *all[] = {d->gradient,        d->volume, d->edge,         d->inverse, d->stiffness,
+                   d->point_stiffness, d->weight, d->inverse_mass, d->turn};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
 }
 
@@ -409,7 +410,8 @@ void sn_net_destroy(sn_net *n) {
                    n->cell_slot,     n->spring_end,  n->spring_share_start, n->spring_share,
                    n->spring_volume, n->point_start, n->point_item,         n->point_node,
                    n->point_volume,  n->node_start,  n->node_item,          n->node_position,
-                   n->mass,          n->mode,        n->root_inverse_mass,  n->node_place};
+                   n->mass,          n->mode,        n->root_inverse_mass,  n->node_place,
+                   n->cell_axes};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(n);
 }

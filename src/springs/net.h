@@ -104,7 +104,8 @@ typedef struct sn_fan {
 
 /// What kernels read, in one precision. Single precision has only what the step reads.
 typedef struct sn_net_data {
-    void *gradient, *volume;          ///< cells; single: coupled only
+    void *gradient, *volume; ///< cells; single: coupled only
+    void *turn; ///< Nullable: axes of the places of the law, where they differ (blocks x 9 x …)
     void *edge, *inverse, *stiffness; ///< springs; edge and 1 / length2: double only
     void *point_stiffness;            ///< volume points
     void *weight, *inverse_mass;      ///< nodes, quads
@@ -199,8 +200,9 @@ struct sn_net {
     double *mass;                ///<                               (nodes)
     double *root_inverse_mass;   ///< of free directions, else 0   (nodes x 3)
     double gravity[3];
-    double axes[9];
-    bool rotated;
+    double axes[9];      ///< of the material; the identity where they differ
+    bool rotated;        ///< axes are not the identity
+    double *cell_axes;   ///< Nullable: of each cell of the mesh, where they differ (cells x 9)
     size_t store_size;   ///< numbers in the store of a state
     sn_net_data data[2]; ///< by sn_precision
 
@@ -321,6 +323,12 @@ sn_status sn_net_list_parts(const sn_mesh *mesh, const sn_net *net, int region,
 /// Places the springs of a region, sorted by end 0, in stars.
 sn_status sn_net_place_springs(sn_net *net, sn_net_region *region, const sn_spring *spring,
                                int count);
+/// Axes of the places of the law from those of the cells, where they differ. After the edges.
+sn_status sn_net_build_turns(sn_net *net);
+/// The law of a tissue at n places from `slot` (cells, or smoothed edges), at most SN_BLOCK, as
+/// sn_law_solid(), with strains and stresses in net->axes. S is needed, W and D may be NULL.
+void sn_net_law(const sn_net *net, const sn_tissue *tissue, int slot, int n, const double *E,
+                double *W, double *S, double *D);
 /// Tiles, and the lists of nodes and volume points. After cells and springs.
 sn_status sn_net_build_tiles(const sn_case *c, sn_net *net);
 /// All cells of a region in fans: by size, then along the curve. *fans is sn_alloc'd for the

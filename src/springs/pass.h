@@ -94,6 +94,8 @@ typedef struct sn_cell_pass {
     const void *u;        ///< quads
     double axes[9];       ///< rotation to material axes
     bool rotated;         ///< axes are not the identity
+    const void *turn;     ///< Nullable: axes of the law of each item, where they differ and the
+                          ///< pass is in axes of space           (blocks x 9 x SN_BLOCK)
     const sn_law *law;
     const double *value;
     const float *value_f;

@@ -256,8 +256,7 @@ static void block_law(const sn_net *net, const sn_net_region *region, const sn_t
         green_strain(c.F, E);
         for (int k = 0; k < 6; k++) law->E[k * SN_BLOCK + lane] = E[k];
     }
-    sn_tangent_law_at(region, parts, (size_t)(block - region->cell_block) * SN_BLOCK, SN_BLOCK,
-                      law->E, law->S, law->D);
+    sn_tangent_law_at(net, region, parts, block * SN_BLOCK, SN_BLOCK, law->E, law->S, law->D);
 }
 
 static void assemble_block(const sn_net *net, sn_tangent *t, const sn_net_region *region,

@@ -91,10 +91,10 @@ static inline double sn_tangent_pressure(const sn_tangent_law *law, size_t n, do
     const size_t block = n / SN_BLOCK * law->volume_components + law->volume_first;
     return sn_tangent_stress(&law->volume, block * SN_BLOCK + n % SN_BLOCK, p);
 }
-/// S and D of count places of the region from place n on, n and count within a block, as they act
-/// now. S: (6 x count), D: (21 x count).
-void sn_tangent_law_at(const sn_net_region *region, const sn_tangent_law *law, size_t n, int count,
-                       const double *E, double *S, double *D);
+/// S and D of count places of the region from `slot` on, within a block, as they act now.
+/// S: (6 x count), D: (21 x count).
+void sn_tangent_law_at(const sn_net *net, const sn_net_region *region, const sn_tangent_law *law,
+                       int slot, int count, const double *E, double *S, double *D);
 
 //---- smoothed edges (springs/tangent_edges.c) ----------------------------------------------------
 

@@ -135,7 +135,7 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
         if (!(c->V > 0)) continue;
         deform(net, call->u, c);
         const size_t n = (size_t)(e - region->edge_block * SN_BLOCK);
-        sn_tangent_law_at(region, law, n, 1, c->E, c->S, c->D);
+        sn_tangent_law_at(net, region, law, e, 1, c->E, c->S, c->D);
         double p = 0, bulk = with_volume ? region->bulk : 0.0;
         if (with_volume) p = sn_tangent_pressure(law, n, bulk * (c->J - 1.0));
         find_rows(c);

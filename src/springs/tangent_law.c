@@ -33,17 +33,17 @@ void sn_tangent_law_of(const sn_net *net, const sn_net_region *region, const sn_
     law->volume_first = apart ? 0 : 6;
 }
 
-void sn_tangent_law_at(const sn_net_region *region, const sn_tangent_law *law, size_t n, int count,
-                       const double *E, double *S, double *D) {
+void sn_tangent_law_at(const sn_net *net, const sn_net_region *region, const sn_tangent_law *law,
+                       int slot, int count, const double *E, double *S, double *D) {
+    const size_t n = (size_t)(slot - sn_region_law_block(net, region) * SN_BLOCK);
     double T[6 * SN_BLOCK], slope[21 * SN_BLOCK];
     const size_t many = (size_t)count;
     memset(S, 0, 6 * many * sizeof *S);
     memset(D, 0, 21 * many * sizeof *D);
     for (int k = law->first; k < law->splits; k++) {
-        const sn_tissue *t = &region->split[k];
         const sn_tangent_memory *m = &law->memory[k];
         const size_t first = n / SN_BLOCK * law->components[k] * SN_BLOCK + n % SN_BLOCK;
-        sn_law_solid(t->law, t->value, t->terms, count, E, NULL, T, slope);
+        sn_net_law(net, &region->split[k], slot, count, E, NULL, T, slope);
         for (size_t c = 0; c < 6; c++)
             for (size_t i = 0; i < many; i++)
                 S[c * many + i] += sn_tangent_stress(m, first + c * SN_BLOCK + i, T[c * many + i]);

@@ -112,6 +112,15 @@ static inline sn_history *body_ramp(double start, double ramp) {
 
 #define ANY ((double)NAN) // a component of a displacement that is free
 
+/// Fibres and second axes at random in every cell.
+static inline void body_turn(sn_case *c, uint64_t seed) {
+    c->fibres.rule = SN_FIBRES_LISTED;
+    c->fibres.count = c->mesh->cell_count;
+    c->fibres.listed = sn_alloc(6 * (size_t)c->mesh->cell_count, sizeof(double));
+    for (int k = 0; k < 6 * c->mesh->cell_count; k++)
+        c->fibres.listed[k] = check_random(&seed, -1, 1);
+}
+
 /// A displacement; NAN components are free.
 static inline void body_move(sn_case *c, const char *on, double x, double y, double z,
                              sn_history *factor) {

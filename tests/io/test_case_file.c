@@ -248,6 +248,121 @@ static void paths_are_relative_to_the_case(void **state) {
     sn_case_destroy(c);
 }
 
+//---- fibres --------------------------------------------------------------------------------------
+
+#define TUBE                                                                                       \
+    "case: c\ntissue: t.yaml\n" TIME                                                               \
+    "mesh: {tube: {inner_radius: 4 mm, outer_radius: 5 mm, length: 2 mm, cells: [1, 6, 1]}}\n"
+#define EGG                                                                                        \
+    "case: c\ntissue: t.yaml\n" TIME "mesh: {ellipsoid: {inner: [7 mm, 17 mm], outer: [10 mm, "    \
+    "20 mm], base: 5 mm, cells: [1, 6, 3]}}\n"
+
+static void fibres_by_rule(void **state) {
+    (void)state;
+    const double degree = 0.017453292519943296;
+    sn_case *c = read_text(BASE TIME "fibres: {direction: [3, 0, 4], sheet: [0, 2, 0]}\n");
+    assert_int_equal(c->fibres.rule, SN_FIBRES_ALIKE);
+    CHECK_ABS(c->fibre[2], 0.8, 1.2e-16);
+    CHECK_ABS(c->fibres.sheet[1], 1, 0);
+    sn_case_destroy(c);
+
+    c = read_text(TUBE "fibres: {circumferential: z, angle: 30 deg}\n");
+    assert_int_equal(c->fibres.rule, SN_FIBRES_AROUND);
+    CHECK_ABS(c->fibres.axis[2], 1, 0);
+    CHECK_REL(c->fibres.angle[1], 30 * degree, 1e-15);
+    assert_true(c->fibres.wall[0] == -1 && c->fibres.wall[1] == -1); // away from the axis is exact
+    assert_false(c->fibres.sheet_normal);
+    sn_case_destroy(c);
+
+    c = read_text(TUBE "fibres: {longitudinal: [0, 0, 2], angle: [60 deg, -60 deg], sheet: normal,"
+                       " through: [1 mm, 0 mm, 0 mm]}\n");
+    CHECK_REL(c->fibres.angle[0], 30 * degree, 1e-14);
+    CHECK_REL(c->fibres.angle[1], 150 * degree, 1e-14);
+    CHECK_ABS(c->fibres.through[0], 1e-3, 0);
+    assert_int_equal(c->fibres.wall[0], sn_mesh_surface(c->mesh, "inner"));
+    assert_int_equal(c->fibres.wall[1], sn_mesh_surface(c->mesh, "outer"));
+    assert_true(c->fibres.sheet_normal);
+    sn_case_destroy(c);
+
+    c = read_text(EGG "fibres: {circumferential: z}\n"); // its wall leans: it needs the surfaces
+    assert_int_equal(c->fibres.wall[0], sn_mesh_surface(c->mesh, "inner"));
+    sn_case_destroy(c);
+    c = read_text(BASE TIME "fibres: {circumferential: y, angle: [1 rad, 2 rad], walls: [bottom, "
+                            "top]}\n");
+    assert_int_equal(c->fibres.wall[1], sn_mesh_surface(c->mesh, "top"));
+    sn_case_destroy(c);
+
+    static const hostile table[] = {
+        {TUBE "fibres: {circumferental: z}\n", SN_E_KEY, "unknown key \"fibres.circumferental\"",
+         "did you mean \"circumferential\"?"},
+        {TUBE "fibres: {angle: 30 deg}\n", SN_E_KEY, "key \"fibres\": expected one of direction",
+         NULL},
+        {TUBE "fibres: {circumferential: z, direction: [1, 0, 0]}\n", SN_E_KEY,
+         "key \"fibres.circumferential\": expected one rule, \"direction\"", NULL},
+        {TUBE "fibres: {direction: [1, 0, 0], angle: 30 deg}\n", SN_E_KEY,
+         "unknown key \"fibres.angle\"", NULL},
+        {TUBE "fibres: {direction: [1, 0, 0], sheet: [-2, 0, 0]}\n", SN_E_DEFINITION,
+         "the sheet (-1, 0, 0) is along the fibre", NULL},
+        {TUBE "fibres: {circumferential: r}\n", SN_E_SYNTAX,
+         "key \"fibres.circumferential\": found \"r\", expected an axis", NULL},
+        {TUBE "fibres: {circumferential: z, angle: 30}\n", SN_E_UNIT, "key \"fibres.angle\"", NULL},
+        {TUBE "fibres: {circumferential: z, sheet: across}\n", SN_E_NAME, "key \"fibres.sheet\"",
+         "wall, normal"},
+        {TUBE "fibres: {circumferential: z, walls: [iner, outer]}\n", SN_E_NAME,
+         "key \"fibres.walls[1]\"", "did you mean \"inner\"?"},
+        {TUBE "fibres: {circumferential: z, walls: [inner, inner]}\n", SN_E_DEFINITION,
+         "key \"fibres.walls\"", "two different"},
+        {TUBE "fibres: {circumferential: z, walls: inner}\n", SN_E_SYNTAX, "key \"fibres.walls\"",
+         "such as [inner, outer]"},
+        {BASE TIME "fibres: {circumferential: z, angle: [1 rad, 2 rad]}\n", SN_E_KEY,
+         "key \"fibres\": an angle that changes", "walls"},
+        {BASE TIME "fibres: f.csv\n", SN_E_SYNTAX, "key \"fibres\": found \"f.csv\"",
+         "{file: fibres.csv}"},
+    };
+    check_hostile(read_and_check, "c.yaml", table, sizeof table / sizeof table[0]);
+}
+
+static sn_status read_listed(const char *path) {
+    (void)path; // f.csv, which the case names
+    sn_case *c;
+    static const char text[] =
+        "case: c\nmesh: {file: m.msh, unit: mm}\ntissue: t.yaml\n" TIME "fibres: {file: f.csv}\n";
+    sn_status status = sn_case_read(scratch_write("c.yaml", text, sizeof text - 1), &c);
+    if (status == SN_OK) sn_case_destroy(c);
+    return status;
+}
+
+static void fibres_from_a_file(void **state) {
+    (void)state;
+    static const char rows[] = "# two cells\nfx [1];fy;fz;sx;sy;sz\n\n0;0;2;1;0;0\n3;-4;0;0;0;-1\n";
+    scratch_write("m.msh", gmsh, sizeof gmsh - 1);
+    scratch_write("f.csv", rows, sizeof rows - 1);
+    sn_case *c = read_text("case: c\nmesh: {file: m.msh, unit: mm}\ntissue: t.yaml\n" TIME
+                           "fibres: {file: f.csv}\n");
+    assert_int_equal(c->fibres.rule, SN_FIBRES_LISTED);
+    assert_int_equal(c->fibres.count, 2);
+    CHECK_REL(c->fibres.listed[6] / c->fibres.listed[7], -0.75, 1e-15);
+    CHECK_ABS(c->fibres.listed[3], 1, 0);
+    sn_case_destroy(c);
+    static const hostile table[] = {
+        {"fx,fy\n1,0\n", SN_E_SYNTAX, "f.csv:1: found a header of 2 columns", "fx,fy,fz"},
+        {"fx,fy,sx\n1,0,0\n", SN_E_SYNTAX, "f.csv:1: found a header", NULL},
+        {"fx,fy,fz [m]\n1,0,0\n", SN_E_SYNTAX, "f.csv:1: found a header", NULL},
+        {"fx,fy,fz\n1,0,0\n0,0\n", SN_E_SYNTAX, "f.csv:3: found 2 columns, expected 3", NULL},
+        {"fx,fy,fz\n1,0,0\n0,x,1\n", SN_E_SYNTAX, "f.csv:3: column 2: found \"x\"", NULL},
+        {"fx,fy,fz\n1,0,0\n0,1e999,1\n", SN_E_SYNTAX, "f.csv:3: column 2", NULL},
+        {"fx,fy,fz\n1,0,0\n0,0,0\n", SN_E_RANGE, "f.csv:3: the fibre has no length", NULL},
+        {"fx,fy,fz,sx,sy,sz\n1,0,0,0,0,0\n", SN_E_RANGE, "f.csv:2: the second direction", NULL},
+        {"fx,fy,fz,sx,sy,sz\n1,0,0,-3,0,0\n", SN_E_RANGE, "f.csv:2: the second direction is along",
+         NULL},
+        {"fx,fy,fz\n1,0,0\n", SN_E_DATA, "f.csv: found 1 rows, expected one for each of the 2",
+         NULL},
+        {"fx,fy,fz\n1,0,0\n1,0,0\n1,0,0\n", SN_E_DATA, "f.csv:4: more rows than the 2 cells", NULL},
+        {"\n# nothing\n", SN_E_SYNTAX, "f.csv: empty", NULL},
+    };
+    check_hostile(read_listed, "f.csv", table, sizeof table / sizeof table[0]);
+}
+
 //---- refused -------------------------------------------------------------------------------------
 
 #define MESH(x) "case: c\ntissue: t.yaml\n" TIME "mesh: " x "\n"
@@ -325,9 +440,6 @@ static void bad_bodies_are_refused(void **state) {
          NULL},
         {BASE TIME "fibres: [1, 0]\n", SN_E_SYNTAX, "key \"fibres\": found a list of 2", NULL},
         {BASE TIME "fibres: [1 m, 0 m, 0 m]\n", SN_E_UNIT, "key \"fibres[1]\"", "is a length"},
-        {BASE TIME "fibres: {circumferential: z, angle: 30 deg}\n", SN_E_UNSUPPORTED,
-         "key \"fibres\": found a map", "not supported"},
-        {BASE TIME "fibres: f.csv\n", SN_E_UNSUPPORTED, "key \"fibres\": found \"f.csv\"", NULL},
         {BASE TIME "gravity: [0, 0, -9.81]\n", SN_E_UNIT, "key \"gravity[1]\"",
          "an acceleration such as"},
         {BASE TIME "gravity: -9.81 m/s2\n", SN_E_SYNTAX, "key \"gravity\"", "a list of 3"},
@@ -509,6 +621,8 @@ int main(void) {
         cmocka_unit_test(shapes_are_built),
         cmocka_unit_test(meshes_come_from_files),
         cmocka_unit_test(paths_are_relative_to_the_case),
+        cmocka_unit_test(fibres_by_rule),
+        cmocka_unit_test(fibres_from_a_file),
         cmocka_unit_test(bad_bodies_are_refused),
         cmocka_unit_test(bad_loads_are_refused),
         cmocka_unit_test(bad_settings_are_refused),

@@ -274,6 +274,10 @@ static void fingerprints(void **state) {
                                &c->tissue[0].value[0],
                                &c->tissue[0].density,
                                &c->fibre[1],
+                               &c->fibres.sheet[0],
+                               &c->fibres.axis[2],
+                               &c->fibres.through[1],
+                               &c->fibres.angle[1],
                                &c->gravity[2],
                                &c->load[0].vector[0],
                                &c->load[0].pressure,
@@ -295,7 +299,8 @@ static void fingerprints(void **state) {
     int *const counts[] = {&c->mesh->cell[7],        &c->mesh->surface[0].face[2],
                            &c->support[0].surface,   &c->load[0].surface,
                            (int *)&c->load[0].kind,  (int *)&c->tool[0].kind,
-                           (int *)&c->probe[0].kind, &c->mesh->region[3]};
+                           (int *)&c->probe[0].kind, &c->mesh->region[3],
+                           (int *)&c->fibres.rule,   &c->fibres.wall[1]};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
         *counts[k] += 1;
         assert_true(sn_case_fingerprint(c) != own);

@@ -81,6 +81,13 @@ static sn_status try_copy(const sn_case *c) {
     return status;
 }
 
+static sn_status try_fibres(const sn_case *c) {
+    double axes[9], *field;
+    SN_TRY(sn_case_axes_field(c, axes, &field));
+    sn_free(field);
+    return SN_OK;
+}
+
 static void shortage(void **state) {
     (void)state;
     sn_allocator scarce = {.resize = scarce_resize, .release = scarce_release};
@@ -100,6 +107,18 @@ static void shortage(void **state) {
     assert_int_equal(exhaust(try_lists, c), 5);
     assert_true(exhaust(try_copy, c) > 10);
     assert_true(exhaust(sn_case_check, c) > 0);
+    c->tissue[0].law = &fibre_law;
+    c->fibres =
+        (sn_fibres){.rule = SN_FIBRES_AROUND,
+                    .axis = {0, 1, 0},
+                    .through = {0.1, 0, 0},
+                    .angle = {0, 1},
+                    .wall = {sn_mesh_surface(c->mesh, "left"), sn_mesh_surface(c->mesh, "right")}};
+    assert_true(exhaust(try_fibres, c) > 10);
+    c->fibres = (sn_fibres){.rule = SN_FIBRES_LISTED, .count = c->mesh->cell_count};
+    c->fibres.listed = sn_alloc(6 * (size_t)c->mesh->cell_count, sizeof(double));
+    for (int k = 0; k < 6 * c->mesh->cell_count; k++) c->fibres.listed[k] = k % 7;
+    assert_true(exhaust(try_copy, c) > 12);
     sn_case_destroy(c);
     assert_int_equal(live, 0);
     sn_set_allocator(NULL);

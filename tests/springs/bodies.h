@@ -74,6 +74,15 @@ static inline sn_case *make_block(const double size[3], const int cells[3], sn_p
     return c;
 }
 
+/// Fibres and second axes at random in every cell.
+static inline void turn_fibres(sn_case *c, uint64_t seed) {
+    c->fibres.rule = SN_FIBRES_LISTED;
+    c->fibres.count = c->mesh->cell_count;
+    c->fibres.listed = sn_alloc(6 * (size_t)c->mesh->cell_count, sizeof(double));
+    for (int k = 0; k < 6 * c->mesh->cell_count; k++)
+        c->fibres.listed[k] = check_random(&seed, -1, 1);
+}
+
 /// Moves every node by up to `part` of an edge, so that no cell is like another. Positions only:
 /// call it before anything is built on the mesh.
 static inline void jitter(sn_case *c, double part, uint64_t seed) {

@@ -134,22 +134,29 @@ static void add_element(const sn_case *c, int cell, const double Q[9], const dou
 
 static void coupled_cells_are_linear_elements(void **state) {
     (void)state;
-    for (int k = 0; k < sn_law_count(); k++) {
-        if (sn_law_at(k)->kind != SN_LAW_SOLID) continue;
-        sn_tissue t = some_tissue(sn_law_at(k));
+    for (int k = 0; k < 2 * sn_law_count(); k++) {
+        const sn_law *law = sn_law_at(k / 2);
+        const bool turned = k % 2; // axes of their own in every cell
+        if (law->kind != SN_LAW_SOLID || (turned && !law->fibres)) continue;
+        sn_tissue t = some_tissue(law);
         sn_case *c = make_block(size, cells, SN_PATTERN_MIRRORED, &t);
         jitter(c, 0.2, 11 + (uint64_t)k);
         c->fibre[0] = 0.48;
         c->fibre[1] = 0.6;
         c->fibre[2] = 0.64;
+        if (turned) turn_fibres(c, 3);
         c->springs.volume = false;
         sn_net *net;
         CHECK_OK(sn_net_create(c, &net));
-        double Q[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+        double Q[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, *field = NULL;
         if (t.law->fibres) sn_case_axes(c, Q);
+        if (turned) CHECK_OK(sn_case_axes_field(c, Q, &field));
+        assert_true(turned == (field != NULL));
         double *u = random_motion(c, 0.15, 5 + (uint64_t)k), *f = forces_at(net, u);
         double *g = sn_alloc((size_t)c->mesh->node_count * 4, sizeof *g);
-        for (int e = 0; e < c->mesh->cell_count; e++) add_element(c, e, Q, u, g);
+        for (int e = 0; e < c->mesh->cell_count; e++)
+            add_element(c, e, field ? field + 9 * (size_t)e : Q, u, g);
+        sn_free(field);
         double scale = largest(g, c->mesh->node_count), worst = 0;
         assert_true(scale > 0.01); // newtons: not a comparison of zeros
         for (int i = 0; i < c->mesh->node_count; i++)
@@ -169,10 +176,13 @@ static void coupled_cells_are_linear_elements(void **state) {
 typedef void each_rung(const sn_case *c, const sn_net *net);
 
 static void for_each_rung(each_rung *check) {
-    for (int n = 0; n < 16; n++) {
-        static const int like[] = {0, 2, 5, 7}; // smoothed: as these, in part central, kinds
-        const bool smoothed = n >= 10 && n < 14, fibres = n >= 14; // central, with families
-        const int k = smoothed ? like[n - 10] : fibres ? 2 * (n - 14) : n;
+    for (int n = 0; n < 20; n++) {
+        // smoothed: as these, in part central, kinds; central with families of fibres; then fibres
+        // of every cell: smoothed, coupled, central
+        static const int like[] = {0, 2, 5, 7, 0, 2, 4, 6, 0, 0};
+        const bool families = n == 14 || n == 15 || n == 19, turned = n >= 16;
+        const bool smoothed = (n >= 10 && n < 14) || n == 16 || n == 17;
+        const int k = n >= 10 ? like[n - 10] : n;
         bool central = k >= 6 ? k % 2 : k % 2 == 1;
         sn_tissue t = k < 4 ? neo_hookean(3e3, 2e4) : demiray(2e3, 4, 4e4);
         if (k >= 8) {
@@ -182,8 +192,9 @@ static void for_each_rung(each_rung *check) {
             t.poissons_ratio = 0.45;
             central = true;
         }
+        if (turned) t = guccione(2e3, 3e4), central = false;
         sn_case *c = make_block(size, cells, k == 5 ? SN_PATTERN_BCC : SN_PATTERN_MIRRORED, &t);
-        if (fibres) {
+        if (families) {
             c->tissue[0] = some_tissue(sn_law_find("hgo"));
             c->fibre[0] = 0.6, c->fibre[2] = 0.8;
             central = true;
@@ -197,6 +208,7 @@ static void for_each_rung(each_rung *check) {
             c->tissue = sn_resize(c->tissue, 2, sizeof *c->tissue);
             c->tissue[1] = neo_hookean(1e3, 2e4);
         }
+        if (turned) turn_fibres(c, 13);
         c->springs.rung = smoothed ? SN_RUNG_SMOOTHED : central ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
         c->springs.volume = k / 2 % 2 == 0;
         sn_net *net;

@@ -32,8 +32,8 @@ void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
         displacement_gradient(pass, &nodes, corner, at, nodal, &c);
         strain(pass, &c);
         if (pass->upright > 0) add_upright(pass, &c);
-        evaluate_law(pass, &c);
-        remember(pass, block - pass->first, &c);
+        evaluate_law(pass, at, &c);
+        remember(pass, at, block - pass->first, &c);
         find_forces(pass, at, &c);
         add_forces(c.f, corner, tile->force);
     }

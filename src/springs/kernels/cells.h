@@ -5,7 +5,9 @@
 // With g_a the gradients of the shape functions in material axes, H = sum u_a g_a and Q the
 // rotation to material axes,
 //     F = Q^T + H,  M = Q H,  E = (M + M^T + M^T M)/2,  J - 1 = tr M + minors of M + det M
-// so that small strains lose no digits. Stresses S (law) and p (volume) give the nodal forces
+// so that small strains lose no digits. Where Q differs from item to item the axes are those of
+// space, and the law alone is turned: see springs/turned.c. Stresses S (law) and p (volume) give
+// the nodal forces
 //     f_a = -V (F S + p cof F) g_a,   f_0 = -(f_1 + f_2 + f_3).
 #pragma once
 
@@ -155,16 +157,47 @@ SN_INLINE void corner_forces(const real *gradient, int i, const wide P[9], real 
     for (int r = 0; r < 3; r++) wide_store(f + r * SN_BLOCK + i, first[r]);
 }
 
-SN_INLINE void evaluate_law(const sn_cell_pass *pass, cell_block *c) {
+// A <- Q A Q^T of symmetric A where Q are axes of each item, or Q^T A Q
+SN_INLINE void turn(const real *axes, bool back, real *A) {
+    static const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
+    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
+        wide Q[9], half[9], a[6];
+        for (int k = 0; k < 9; k++)
+            Q[back ? k % 3 * 3 + k / 3 : k] = wide_load(axes + k * SN_BLOCK + i);
+        for (int k = 0; k < 6; k++) a[k] = wide_load(A + k * SN_BLOCK + i);
+        for (int r = 0; r < 3; r++)
+            for (int s = 0; s < 3; s++)
+                half[3 * r + s] = Q[3 * r] * a[sym[0][s]] + Q[3 * r + 1] * a[sym[1][s]] +
+                                  Q[3 * r + 2] * a[sym[2][s]];
+        for (int k = 0; k < 6; k++) {
+            const wide *h = half + 3 * pair[k][0], *q = Q + 3 * pair[k][1];
+            wide_store(A + k * SN_BLOCK + i, h[0] * q[0] + h[1] * q[1] + h[2] * q[2]);
+        }
+    }
+}
+
+// the stress of the law of `value` at E, which is in the axes of the law; at: the first item
+SN_INLINE void law_at(const sn_cell_pass *pass, const double *value, const float *value_f,
+                      size_t at, const real *E, real *S) {
 #if SN_REAL_BITS == 64
-    sn_law_solid(pass->law, pass->value, pass->terms, SN_BLOCK, c->E, NULL, c->T, NULL);
+    (void)value_f;
+    sn_law_solid(pass->law, value, pass->terms, SN_BLOCK, E, NULL, S, NULL);
 #else
-    sn_law_solid_f(pass->law, pass->value_f, pass->terms, SN_BLOCK, c->E, NULL, c->T, NULL);
+    (void)value;
+    sn_law_solid_f(pass->law, value_f, pass->terms, SN_BLOCK, E, NULL, S, NULL);
 #endif
+    if (pass->turn) turn((const real *)pass->turn + 9 * at, true, S);
+}
+
+// E goes to the axes of the law
+SN_INLINE void evaluate_law(const sn_cell_pass *pass, size_t at, cell_block *c) {
+    if (pass->turn) turn((const real *)pass->turn + 9 * at, false, c->E);
+    law_at(pass, pass->value, pass->value_f, at, c->E, c->T);
 }
 
 // T of block `block` of the memory becomes what it has relaxed to
-SN_INLINE void remember(const sn_cell_pass *pass, int block, cell_block *c) {
+SN_INLINE void remember(const sn_cell_pass *pass, size_t at, int block, cell_block *c) {
     if (!pass->apart) {
         const int components = pass->volume_mode == SN_VOLUME_CELL ? 7 : 6;
         block_memory(&pass->memory, block, components * SN_BLOCK, c->T);
@@ -175,11 +208,7 @@ SN_INLINE void remember(const sn_cell_pass *pass, int block, cell_block *c) {
         block_memory(&pass->bulk_memory, block, SN_BLOCK, c->T + 6 * SN_BLOCK);
     if (!pass->fibre_value) return;
     real *S = c->f; // not in use yet
-#if SN_REAL_BITS == 64
-    sn_law_solid(pass->law, pass->fibre_value, pass->terms, SN_BLOCK, c->E, NULL, S, NULL);
-#else
-    sn_law_solid_f(pass->law, pass->fibre_value_f, pass->terms, SN_BLOCK, c->E, NULL, S, NULL);
-#endif
+    law_at(pass, pass->fibre_value, pass->fibre_value_f, at, c->E, S);
     block_memory(&pass->fibre_memory, block, 6 * SN_BLOCK, S);
     for (int i = 0; i < 6 * SN_BLOCK; i += SN_LANES)
         wide_store(c->T + i, wide_load(c->T + i) + wide_load(S + i));

@@ -94,8 +94,8 @@ void SN_KERNEL(sn_edges)(const sn_cell_pass *pass, int block) {
     ask_memory(pass, block - pass->first);
     gather_shapes(pass, at, &c);
     strain(pass, &c);
-    evaluate_law(pass, &c);
-    remember(pass, block - pass->first, &c);
+    evaluate_law(pass, at, &c);
+    remember(pass, at, block - pass->first, &c);
     find_piola(pass, &c);
     for (int i = 0; i < SN_BLOCK; i += 4, to += 4 * ITEM)
         for (int r = 0; r < 3; r++) {
