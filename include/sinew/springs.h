@@ -103,7 +103,9 @@ typedef struct sn_step_info {
     int warnings; ///< counted so far: steps cut, states recovered
 } sn_step_info;
 
-/// Advances by at most dt seconds, one explicit or implicit step. Never allocates.
+/// Advances by at most dt seconds, one explicit or implicit step; an explicit one by dt or by the
+/// largest equal part of dt that is stable, so that steps that go on to dt are all of one length.
+/// Never allocates.
 SN_API sn_step_info sn_state_step(const sn_net *net, sn_state *state, double dt);
 /// Arrays of the engine, to read without a copy; they hold until the next call that changes the
 /// state. A node's numbers stand in a row of `stride`, x y z first; node i of the mesh has row
@@ -197,6 +199,10 @@ typedef struct sn_springs_haptic_row {
     double step_s; ///< at rest
     double steps_per_frame;
     double frame_p50_s, frame_p999_s, frame_max_s; ///< wall time of a frame
+    double cpu_p50_s, cpu_p999_s;                  ///< time that the calling thread ran in a frame
+    double worst_steps; ///< of the longest thousandth of all frames: steps in each,
+    double worst_looks; ///< part in which the frequency was looked at,
+    double worst_cpu_s; ///< time that the calling thread ran
     double real_time_factor;
     double force_N; ///< largest on the sphere
     int warnings;

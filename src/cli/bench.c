@@ -1,5 +1,6 @@
 // sinew bench: how fast the engine runs here.
 // SPDX-License-Identifier: Apache-2.0
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -33,7 +34,26 @@ static sn_springs_bench_plan plan_of(int k) {
                                    .precision = whole ? SN_SINGLE : SN_DOUBLE};
 }
 
-static json_t *row_json(const sn_springs_bench_row *r) {
+// a row, and beside what it is to be read
+typedef struct bench_ratios {
+    double memory;  ///< time of a step over that without memory; NAN where there is no such row
+    double threads; ///< speed over that on one thread
+} bench_ratios;
+
+static double step_seconds(const sn_springs_bench_row *r) {
+    return r->step_s / r->real_time_factor;
+}
+
+// rows come by size, then number of exponentials, then threads
+static bench_ratios ratios_of(const sn_springs_bench_row *row, int k) {
+    bench_ratios out = {(double)NAN, (double)NAN};
+    if (k >= SINGLE) return out;
+    if (k / THREADS % TERMS > 0) out.memory = step_seconds(row) / step_seconds(row - THREADS);
+    if (k % THREADS > 0) out.threads = step_seconds(row - 1) / step_seconds(row);
+    return out;
+}
+
+static json_t *row_json(const sn_springs_bench_row *r, bench_ratios ratios) {
     json_t *json = json_object();
     cli_put_text(json, "model", r->model);
     cli_put_text(json, "law", r->law);
@@ -52,18 +72,23 @@ static json_t *row_json(const sn_springs_bench_row *r) {
     cli_put_number(json, "plain_per_second", r->plain_per_second);
     cli_put_number(json, "step_s", r->step_s);
     cli_put_number(json, "real_time_factor", r->real_time_factor);
+    cli_put_number(json, "memory_cost", ratios.memory);
+    cli_put_number(json, "thread_gain", ratios.threads);
     return json;
 }
 
-static void print_row(const sn_springs_bench_row *r) {
+static void print_row(const sn_springs_bench_row *r, bench_ratios ratios) {
     double speed = r->springs_per_second > 0 ? r->springs_per_second : r->cells_per_second;
     char model[SN_NAME_MAX + 8];
     snprintf(model, sizeof model, "%s%s", r->model, r->volume ? "+volume" : "");
-    printf("%-15s %-11s %6d %6d %3d %3d %-6s %7.1f M %-9s %7.1f M %4.0f %% %6.1f x %9.3f\n", model,
+    printf("%-15s %-11s %6d %6d %3d %3d %-6s %7.1f M %-9s %7.1f M %4.0f %% %6.1f x %9.3f", model,
            r->law, r->nodes, r->springs > 0 ? r->springs : r->cells, r->memory_terms, r->threads,
            r->precision == SN_SINGLE ? "single" : "double", 1e-6 * speed,
            r->springs_per_second > 0 ? "springs/s" : "cells/s", 1e-6 * r->bound_per_second,
            100 * speed / r->bound_per_second, speed / r->plain_per_second, r->real_time_factor);
+    if (!isnan(ratios.memory)) printf("  memory %.2f x", ratios.memory);
+    if (!isnan(ratios.threads)) printf("  threads %.2f x", ratios.threads);
+    printf("\n");
     fflush(stdout);
 }
 
@@ -76,26 +101,21 @@ static int bench_springs(const cli_arguments *arguments) {
                sn_isa_name(), "model", "law", "nodes", "items", "exp", "thr", "real", "speed",
                "bound", "of it", "of plain", "real time");
     json_t *results = json_array();
+    static sn_springs_bench_row rows[PLANS];
     for (int k = 0; k < PLANS; k++) {
-        sn_springs_bench_row row;
+        sn_springs_bench_row *row = &rows[k];
         const sn_springs_bench_plan plan = plan_of(k);
-        sn_status status = sn_springs_bench(&plan, &row);
+        sn_status status = sn_springs_bench(&plan, row);
         if (status != SN_OK) {
             json_decref(results);
             return cli_fail(status);
         }
-        json_array_append_new(results, row_json(&row));
-        if (table) print_row(&row);
+        json_array_append_new(results, row_json(row, ratios_of(row, k)));
+        if (table) print_row(row, ratios_of(row, k));
     }
     json_t *json = json_object();
-    cli_put(json, "results", results);
-    cli_put_text(json, "machine", machine);
     cli_put_text(json, "kernels", sn_isa_name());
-    if (arguments->json)
-        cli_print_json(json);
-    else
-        json_decref(json);
-    return CLI_DONE;
+    return cli_bench_end(arguments, json, results);
 }
 
 static int run(const cli_command *command, int argc, char **argv) {

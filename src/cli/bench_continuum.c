@@ -96,12 +96,5 @@ int cli_bench_continuum(const cli_arguments *arguments, const cli_bench_choice *
         json_array_append_new(results, row_json(&row));
         if (table) print_row(&row);
     }
-    json_t *json = json_object();
-    cli_put(json, "results", results);
-    cli_put_text(json, "machine", machine);
-    if (arguments->json)
-        cli_print_json(json);
-    else
-        json_decref(json);
-    return CLI_DONE;
+    return cli_bench_end(arguments, json_object(), results);
 }

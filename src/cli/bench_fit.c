@@ -136,15 +136,11 @@ int cli_bench_fit(const cli_arguments *arguments) {
                RAMP_ROWS, cli_show(t.direct, "s"), cli_show(t.recursion, "s"),
                t.direct / t.recursion);
     }
-    if (!arguments->json) return CLI_DONE;
     json_t *json = json_object(), *results = json_array();
     json_array_append_new(results,
                           row("four ramps", RAMPS * RAMP_ROWS, t.ramps, t.ramp_evaluations));
     json_array_append_new(results, row("cycles", CYCLE_ROWS, t.cycles, t.cycle_evaluations));
-    cli_put(json, "results", results);
     cli_put_number(json, "direct_convolution_s", t.direct);
     cli_put_number(json, "recursion_s", t.recursion);
-    cli_put_text(json, "machine", machine);
-    cli_print_json(json);
-    return CLI_DONE;
+    return cli_bench_end(arguments, json, results);
 }

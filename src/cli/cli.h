@@ -68,6 +68,9 @@ int cli_fail(sn_status status);
 /// Refuses a word that is not in a list, with a suggestion. @return CLI_BAD_INPUT
 int cli_unknown(const char *what, const char *word, const char *const *names, int count);
 
+/// Ends a benchmark: puts its results and the machine into the object, prints it where JSON is
+/// wanted, and releases it. Returns the exit code.
+int cli_bench_end(const cli_arguments *arguments, json_t *json, json_t *results);
 /// sinew bench fit (bench_fit.c).
 int cli_bench_fit(const cli_arguments *arguments);
 /// G(t) of a memory beside the exponentials that stand for it, over their band (memory_plots.c).

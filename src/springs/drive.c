@@ -325,36 +325,30 @@ void sn_net_loads(const sn_net *net, double t, const sn_load_call *call, double 
     }
 }
 
-double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
-    const double margin = net->edge;
+bool sn_net_contact(const sn_net *net, const sn_contact_call *call) {
     const double *stiffness = call->parts ? call->parts->contact_stiffness : net->contact_stiffness;
     const int count = call->parts ? net->contact_count : net->skin_count;
-    double omega2 = 0.0;
+    bool any = false;
     for (int t = 0; t < net->tool_count; t++) {
         const sn_pose *pose = &call->pose[t];
-        const double near = sn_tool_reach(&net->tool[t]) + margin;
-        double *sum = call->tool_force[t], torque[3] = {0}, stiffest = 0.0;
+        const double near = sn_tool_reach(&net->tool[t]);
+        double *sum = call->tool_force[t], torque[3] = {0};
         sum[0] = sum[1] = sum[2] = 0.0;
         for (int k = 0; k < count; k++) {
             const int node = net->contact_node[k];
             const size_t at = (size_t)t * (size_t)net->contact_count + (size_t)k;
-            double x[3], force[3], tangent[9], r[3], r2 = 0.0;
+            double x[3], force[3], tangent[9], r[3];
             position(net, call->precision, call->u, node, x);
-            for (int d = 0; d < 3; d++) {
-                r[d] = x[d] - pose->centre[d];
-                r2 += r[d] * r[d];
-            }
-            if (r2 >= near * near || !(stiffness[k] > 0) ||
-                (call->grip && call->grip[node].tool >= 0)) {
+            for (int d = 0; d < 3; d++) r[d] = x[d] - pose->centre[d];
+            const bool far = r[0] * r[0] + r[1] * r[1] + r[2] * r[2] >= near * near;
+            if (far || !(stiffness[k] > 0) || (call->grip && call->grip[node].tool >= 0)) {
                 call->after[at] = (sn_contact){0};
                 continue;
             }
-            const bool touches =
-                sn_tool_contact(&net->tool[t], pose, x, stiffness[k], &call->before[at],
-                                &call->after[at], force, call->tangent ? tangent : NULL);
-            if (touches || sn_tool_depth(&net->tool[t], pose, x, NULL) > -margin)
-                stiffest = fmax(stiffest, stiffness[k] / net->mass[node]);
-            if (!touches) continue;
+            if (!sn_tool_contact(&net->tool[t], pose, x, stiffness[k], &call->before[at],
+                                 &call->after[at], force, call->tangent ? tangent : NULL))
+                continue;
+            any = true;
             for (int d = 0; d < 3; d++) {
                 call->ext[3 * node + d] += force[d];
                 sum[d] -= force[d]; // of the tissue on the tool
@@ -364,9 +358,8 @@ double sn_net_contact(const sn_net *net, const sn_contact_call *call) {
             if (call->tangent) call->tangent(call->context, node, tangent);
         }
         if (call->tool_torque) memcpy(call->tool_torque[t], torque, sizeof torque);
-        omega2 += stiffest;
     }
-    return omega2;
+    return any;
 }
 
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose) {

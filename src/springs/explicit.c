@@ -115,9 +115,7 @@ static void stop(sn_run *run, const sn_state *s) {
 
 // of the next step
 static double pace(const sn_net *net, const sn_state *s, double left) {
-    if (s->implicit) return left / fmax(1.0, ceil(left / net->step - 1e-6));
-    // the last two steps before a landing share what is left
-    return left > 2 * s->last_step || left <= s->last_step ? left : 0.5 * left;
+    return s->implicit ? left / fmax(1.0, ceil(left / net->step - 1e-6)) : left;
 }
 
 // steps from now to `next`

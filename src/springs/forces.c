@@ -231,7 +231,56 @@ static void node_task(void *context, int chunk) {
     w->kernels->nodes(&w->nodes, chunk);
 }
 
-void sn_net_forces(const sn_net *net, const sn_force_call *call) {
+/// Tasks that need no others of their own kind.
+typedef struct force_stage {
+    sn_team_task *task;
+    int count;
+} force_stage;
+enum { STAGES = 6 };
+
+// the stages of an evaluation, in order; returns how many
+static int list_stages(const sn_net *net, force_stage *stage) {
+    const int springs = net->spring_tiles.count, fans = net->fan_tiles.count;
+    const int cells = net->cell_tiles.count;
+    int n = 0;
+    if (net->volume) {
+        stage[n++] = (force_stage){volume_task, fans};
+        stage[n++] = (force_stage){point_task, net->point_blocks};
+    }
+    if (net->rung == SN_RUNG_COUPLED) {
+        stage[n++] = (force_stage){cell_task, cells};
+    } else if (net->rung == SN_RUNG_SMOOTHED) {
+        stage[n++] = (force_stage){shape_task, cells};
+        stage[n++] = (force_stage){edge_task, net->edge_blocks};
+        stage[n++] = (force_stage){share_task, cells};
+    } else {
+        stage[n++] = (force_stage){central_task, springs + fans + cells};
+    }
+    stage[n++] = (force_stage){node_task, sn_net_chunks(net)};
+    SN_ASSERT(n <= STAGES);
+    return n;
+}
+
+/// Tasks of a stage from `first` on.
+typedef struct stage_part {
+    force_work *work;
+    sn_team_task *task;
+    int first;
+} stage_part;
+
+static void part_task(void *context, int k) {
+    const stage_part *p = context;
+    p->task(p->work, p->first + k);
+}
+
+int sn_net_force_tasks(const sn_net *net) {
+    force_stage stage[STAGES];
+    int tasks = 0;
+    for (int k = 0, n = list_stages(net, stage); k < n; k++) tasks += stage[k].count;
+    return tasks;
+}
+
+void sn_net_forces_part(const sn_net *net, const sn_force_call *call, int first, int count) {
     force_work w = {.net = net,
                     .call = call,
                     .kernels = sn_spring_kernels_row(net->isa, call->precision),
@@ -250,21 +299,18 @@ void sn_net_forces(const sn_net *net, const sn_force_call *call) {
         set_springs(net, region, call, factors, &call->out->springs[r]);
         set_points(net, region, call, factors, &call->out->points[r]);
     }
-    if (net->volume) {
-        sn_team_run(call->team, net->fan_tiles.count, volume_task, &w);
-        sn_team_run(call->team, net->point_blocks, point_task, &w);
+    force_stage stage[STAGES];
+    const int stages = list_stages(net, stage), last = first + count;
+    for (int k = 0, from = 0; k < stages; from += stage[k++].count) {
+        const int low = first > from ? first - from : 0;
+        const int high = last - from < stage[k].count ? last - from : stage[k].count;
+        stage_part part = {&w, stage[k].task, low};
+        if (low < high) sn_team_run(call->team, high - low, part_task, &part);
     }
-    if (net->rung == SN_RUNG_COUPLED) {
-        sn_team_run(call->team, net->cell_tiles.count, cell_task, &w);
-    } else if (net->rung == SN_RUNG_SMOOTHED) {
-        sn_team_run(call->team, net->cell_tiles.count, shape_task, &w);
-        sn_team_run(call->team, net->edge_blocks, edge_task, &w);
-        sn_team_run(call->team, net->cell_tiles.count, share_task, &w);
-    } else {
-        const int tiles = net->spring_tiles.count + net->fan_tiles.count + net->cell_tiles.count;
-        sn_team_run(call->team, tiles, central_task, &w);
-    }
-    sn_team_run(call->team, sn_net_chunks(net), node_task, &w);
+}
+
+void sn_net_forces(const sn_net *net, const sn_force_call *call) {
+    sn_net_forces_part(net, call, 0, sn_net_force_tasks(net));
 }
 
 sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratch *scratch) {

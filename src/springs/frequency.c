@@ -12,9 +12,15 @@
 
 #include "springs/net.h"
 
+enum { APART = 16 }; // sums that do not wait for each other
+
 static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
+    double part[APART] = {0}, sum = 0.0;
+    size_t i = 0;
+    for (; i + APART <= n; i += APART)
+        for (size_t k = 0; k < APART; k++) part[k] += a[i + k] * b[i + k];
+    for (; i < n; i++) part[0] += a[i] * b[i];
+    for (size_t k = 0; k < APART; k++) sum += part[k];
     return sum;
 }
 
@@ -76,17 +82,22 @@ static void add_force(const sn_net *net, const sn_frequency_call *call, double f
             sn_real_at(call->precision, call->scratch->f, 4 * (size_t)(k / 3) + (size_t)(k % 3));
 }
 
-// out <- A y; `base` holds the force at u. The largest difference of a displacement, of an edge, is
-// the root of the rounding in either precision, or more: what it leaves is far below the safety of
-// the step.
-static void apply(const sn_net *net, const sn_frequency_call *call, const double *base,
-                  const double *y, double *out) {
+// The largest difference of a displacement, of an edge, is the root of the rounding in either
+// precision, or more: what it leaves is far below the safety of the step.
+static void try_vector(const sn_net *net, const sn_frequency_call *call, const double *y,
+                       sn_lanczos *l) {
     double most = 0.0;
-    for (int k = 0; k < 3 * net->nodes; k++)
-        most = fmax(most, fabs(y[k]) * net->root_inverse_mass[k]);
-    const double tiny = (call->precision == SN_SINGLE ? 1e-3 : 1e-6) * net->edge / most;
-    place_trial(net, call, tiny, y);
-    evaluate(net, call, call->trial, false);
+    for (int k = 0; k < 3 * net->nodes; k++) {
+        const double size = fabs(y[k]) * net->root_inverse_mass[k];
+        most = size > most ? size : most;
+    }
+    l->tiny = (call->precision == SN_SINGLE ? 1e-3 : 1e-6) * net->edge / most;
+    place_trial(net, call, l->tiny, y);
+}
+
+// out <- A y, from the forces at the trial place
+static void take_product(const sn_net *net, const sn_frequency_call *call, const double *base,
+                         const double *y, double tiny, double *out) {
     take_force(net, call, 1.0 / tiny, base, out);
     if (!call->taut) return;
     // fibres that are slack this way are taut that way
@@ -118,43 +129,67 @@ static double small_eigenvalue(const double *diagonal, const double *beside, int
     return value;
 }
 
-double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
-    const size_t n = (size_t)net->nodes * 3;
-    double diagonal[SN_LANCZOS_MAX], beside[SN_LANCZOS_MAX], x[SN_LANCZOS_MAX];
-    double *base = call->basis + (size_t)call->steps * n;
-    int steps = 0;
+// the basis is followed by the force at u
+static double *base_of(const sn_net *net, const sn_frequency_call *call) {
+    return call->basis + (size_t)call->steps * (size_t)net->nodes * 3;
+}
 
-    evaluate(net, call, call->u, false);
+bool sn_lanczos_begin(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l) {
+    const size_t n = (size_t)net->nodes * 3;
+    double *base = base_of(net, call);
+    *l = (sn_lanczos){0};
     for (size_t k = 0; k < n; k++) {
         base[k] = sn_real_at(call->precision, call->scratch->f, 4 * (k / 3) + k % 3);
         call->basis[k] = net->root_inverse_mass[k] > 0 ? call->mode[k] : 0.0;
     }
-    double norm = sqrt(dot(call->basis, call->basis, n));
-    if (!(norm > 0) || !isfinite(norm)) return 0.0;
+    const double norm = sqrt(dot(call->basis, call->basis, n));
+    if (!(norm > 0) || !isfinite(norm)) return false;
     for (size_t k = 0; k < n; k++) call->basis[k] /= norm;
-    while (steps < call->steps) {
-        const double *q = call->basis + (size_t)steps * n;
-        double *next = call->basis + (size_t)(steps + 1) * n;
-        double *w = steps + 1 < call->steps ? next : call->mode;
-        apply(net, call, base, q, w);
-        diagonal[steps] = dot(q, w, n);
-        for (int j = 0; j <= steps; j++) { // against all: rounding would bring copies back
-            const double *p = call->basis + (size_t)j * n;
-            double along = dot(p, w, n);
-            for (size_t k = 0; k < n; k++) w[k] -= along * p[k];
-        }
-        norm = sqrt(dot(w, w, n));
-        beside[steps++] = norm;
-        if (!(norm > 1e-9 * fabs(diagonal[0])) || steps == call->steps) break;
-        for (size_t k = 0; k < n; k++) w[k] /= norm;
+    try_vector(net, call, call->basis, l);
+    return true;
+}
+
+bool sn_lanczos_go_on(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l) {
+    const size_t n = (size_t)net->nodes * 3;
+    const int at = l->steps++;
+    const bool last = l->steps == call->steps;
+    const double *q = call->basis + (size_t)at * n;
+    double *w = last ? call->mode : call->basis + (size_t)(at + 1) * n;
+    take_product(net, call, base_of(net, call), q, l->tiny, w);
+    l->diagonal[at] = dot(q, w, n);
+    if (last) return false;
+    for (int j = 0; j <= at; j++) { // against all: rounding would bring copies back
+        const double *p = call->basis + (size_t)j * n;
+        const double along = dot(p, w, n);
+        for (size_t k = 0; k < n; k++) w[k] -= along * p[k];
     }
-    double value = small_eigenvalue(diagonal, beside, steps, x);
-    for (size_t k = 0; k < n; k++) {
-        double sum = 0.0;
-        for (int j = 0; j < steps; j++) sum += x[j] * call->basis[(size_t)j * n + k];
-        call->mode[k] = sum;
-    }
+    l->beside[at] = sqrt(dot(w, w, n));
+    if (!(l->beside[at] > 1e-9 * fabs(l->diagonal[0]))) return false;
+    for (size_t k = 0; k < n; k++) w[k] /= l->beside[at];
+    try_vector(net, call, w, l);
+    return true;
+}
+
+double sn_lanczos_end(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l) {
+    const size_t n = (size_t)net->nodes * 3;
+    double x[SN_LANCZOS_MAX];
+    const double value = small_eigenvalue(l->diagonal, l->beside, l->steps, x);
+    for (size_t k = 0; k < n; k++) call->mode[k] = x[0] * call->basis[k];
+    for (int j = 1; j < l->steps; j++)
+        for (size_t k = 0; k < n; k++) call->mode[k] += x[j] * call->basis[(size_t)j * n + k];
     return value;
+}
+
+double sn_net_frequency(const sn_net *net, const sn_frequency_call *call) {
+    sn_lanczos l;
+    evaluate(net, call, call->u, false);
+    bool more = sn_lanczos_begin(net, call, &l);
+    if (!more) return 0.0;
+    while (more) {
+        evaluate(net, call, call->trial, false);
+        more = sn_lanczos_go_on(net, call, &l);
+    }
+    return sn_lanczos_end(net, call, &l);
 }
 
 double sn_net_stable_step(const sn_net *net, double omega2) {

@@ -263,6 +263,24 @@ typedef struct sn_grip {
 
 typedef struct sn_implicit sn_implicit;
 
+#define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
+#define SN_LANCZOS_WARM 2 ///< steps while running
+
+/// A search for the highest frequency under way.
+typedef struct sn_lanczos {
+    int steps;
+    double tiny; ///< factor of the trial displacement
+    double diagonal[SN_LANCZOS_MAX], beside[SN_LANCZOS_MAX];
+} sn_lanczos;
+
+/// A look at the frequency that goes on over several steps (springs/look.c).
+typedef struct sn_look {
+    void *u;      ///< quads: the place that is looked at
+    int done;     ///< tasks; 0: none is under way
+    bool upright; ///< cells were crushed there
+    sn_lanczos lanczos;
+} sn_look;
+
 struct sn_state {
     double time;
     sn_precision precision;
@@ -291,11 +309,13 @@ struct sn_state {
     sn_grip *grip;               ///<                                (nodes)
     int *gripped, gripped_count; ///< nodes that tools hold
     // the search for the highest frequency
+    sn_look look;
     void *probe_trial; ///< quads
     double *mode, *basis;
     sn_scratch probe;
     double omega2, seen_omega2; ///< until the next look, at the last look
-    double contact_omega2;      ///< what tools add at most; 0: none is near
+    double ruling_omega2;       ///< what the step is chosen for
+    bool touching;              ///< a node touches a tool
     long steps;
     int check_in, check_every; ///< steps until omega2 is looked at again
     double moved, check_way;   ///< most that a node can have moved since, may move, m
@@ -424,6 +444,10 @@ typedef struct sn_force_call {
 } sn_force_call;
 /// Internal forces and weight at all nodes, in out->f.
 void sn_net_forces(const sn_net *net, const sn_force_call *call);
+/// The same in parts: an evaluation is sn_net_force_tasks() tasks in order, and `count` of them,
+/// from `first` on, are done. All but the last part leave what they did in `out` alone.
+void sn_net_forces_part(const sn_net *net, const sn_force_call *call, int first, int count);
+int sn_net_force_tasks(const sn_net *net);
 sn_status sn_scratch_create(const sn_net *net, sn_precision precision, sn_scratch *scratch);
 void sn_scratch_destroy(sn_scratch *scratch);
 
@@ -467,13 +491,22 @@ typedef struct sn_contact_call {
     sn_tangent_sink *tangent;
     void *context;
 } sn_contact_call;
-/// @return a bound on what contact adds to the highest eigenvalue of M^-1 K, 1/s2: the largest
-/// stiffness over mass of the nodes that a tool touches or nearly does (an edge away: a step that
-/// shrank only on touching would throw off what came too deep), summed over the tools.
-double sn_net_contact(const sn_net *net, const sn_contact_call *call);
+/// @return whether a node touches a tool.
+bool sn_net_contact(const sn_net *net, const sn_contact_call *call);
 /// Where a tool is at time t.
 void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double t, sn_pose *pose);
 
+/// After a step in which a node moved by `way` at most: goes on with the look at the frequency, or
+/// starts one when it is due.
+void sn_state_follow_frequency(const sn_net *net, sn_state *s, double way);
+/// A tool begins to touch: looks follow each other closely until they find nothing new.
+void sn_state_look_closer(const sn_net *net, sn_state *s);
+/// Ends a look under way without a result: what it looked at is no more.
+void sn_state_forget_look(sn_state *s);
+/// Does again what a look under way had done, which bytes do not hold.
+void sn_state_redo_look(const sn_net *net, sn_state *s);
+/// Frequency and way until the next look, of a state at rest.
+void sn_state_rest_frequency(const sn_net *net, sn_state *s);
 /// Looks whether cells are crushed, from s->now.growth, and from all cells while some were; counts
 /// a warning when it begins.
 void sn_state_look_at_cells(const sn_net *net, sn_state *s);
@@ -493,6 +526,12 @@ void sn_state_add_pushes(sn_state *s);
 void sn_state_remember_grips(sn_state *s);
 /// Takes held nodes to where their tools are at the state's time + h.
 void sn_state_move_grips(const sn_net *net, sn_state *s, double h);
+/// Takes the stiffness of contact off the stable step (springs/touch.c): changes s->now.f, s->ext
+/// and what tools feel at the nodes that touch.
+void sn_state_ease_contact(const sn_net *net, sn_state *s);
+/// The step that contact is eased for, s, and how much longer than it the next one may be.
+double sn_state_touch_step(const sn_net *net, const sn_state *s);
+#define SN_TOUCH_GROWTH 1.2
 /// Adds what held nodes give their tools, from the forces in s->now.f.
 void sn_state_pull_tools(const sn_net *net, sn_state *s);
 /// Grasps and releases what the case says for the state's time.
@@ -517,8 +556,11 @@ typedef struct sn_frequency_call {
     bool taut;              ///< at rest: fibres of a central net resist both ways
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
-#define SN_LANCZOS_MAX 10 ///< steps before a restart, at rest
-#define SN_LANCZOS_WARM 2 ///< steps while running
+/// The same in parts: begin with the forces at u in the scratch; while it is true that another
+/// evaluation is wanted, of the forces at `trial`, go on with them; end gives the eigenvalue.
+bool sn_lanczos_begin(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
+bool sn_lanczos_go_on(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
+double sn_lanczos_end(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
 /// The explicit step and the mode of the highest frequency of a net at rest.
 sn_status sn_net_find_step(sn_net *net);
 /// Longest stable step for a highest eigenvalue, without safety.

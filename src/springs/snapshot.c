@@ -106,12 +106,16 @@ static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
         PIECE(last_step),
         PIECE(omega2),
         PIECE(seen_omega2),
-        PIECE(contact_omega2),
+        PIECE(ruling_omega2),
+        PIECE(touching),
         PIECE(steps),
         PIECE(check_in),
         PIECE(check_every),
         PIECE(moved),
         PIECE(check_way),
+        {s->look.u, net->integrator == SN_INTEGRATOR_EXPLICIT ? nodes * 4 * real : 0},
+        PIECE(look.done),
+        PIECE(look.upright),
         PIECE(warnings),
         PIECE(broken),
         PIECE(crushed),
@@ -200,6 +204,7 @@ sn_status sn_state_load(const sn_net *net, sn_state *s, const void *bytes, size_
                        sizeof(snapshot_head) + total(piece, count));
     read_pieces(piece, count, (const unsigned char *)bytes + sizeof(snapshot_head));
     if (s->cut) sn_cut_restore(net, s->cut);
+    sn_state_redo_look(net, s);
     return SN_OK;
 }
 
@@ -323,6 +328,7 @@ sn_status sn_run_load(sn_run *run, sn_state *s, const sn_piece *own, int count) 
     }
     read_pieces(piece, pieces, from);
     if (s->cut) sn_cut_restore(run->net, s->cut);
+    sn_state_redo_look(run->net, s);
     take_numbers(run, numbers);
 fail:
     sn_free(piece);

@@ -11,21 +11,11 @@
 // spin that have its momentum and angular momentum), by the factor exp(-damping h), between the two
 // halves of the kick: it takes no momentum, does not slow a fall or a spin, and leaves the
 // stability limit where it is or higher.
-//
-// The highest frequency is looked at again after a number of steps, and as soon as a node can have
-// moved by a certain way; both adapt to how it changes. Between two looks it is taken to grow by as
-// much as it did between the last two. Tissue that has stiffened swings between softer and stiffer
-// places: measured on an exponential law at 16 times its stiffness at rest, 0.9 of the limit blows
-// up in the end and 0.77 does not, so stiffening shortens the step by up to another sixth.
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "springs/net.h"
-
-enum { CHECK_FIRST = 64, CHECK_LEAST = 8, CHECK_MOST = 512 };
-static const double way_first = 0.05, way_least = 1e-4; // between looks, of an edge
-static const double way_most = 1.0, way_touched = 0.1;  // in quiet, and while a tool touches
 
 static const double lost_way = 1e3;  // of an edge in one step: nothing comes back from there
 static const double wild_way = 0.02; // of an edge in one step: a fiftieth of the speed of waves
@@ -64,14 +54,15 @@ sn_status sn_state_create(const sn_net *net, sn_state **state) {
     s->pushed = sn_alloc(nodes, sizeof *s->pushed);
     s->grip = sn_alloc(nodes, sizeof *s->grip);
     s->gripped = sn_alloc(nodes, sizeof *s->gripped);
+    s->look.u = sn_alloc(steps ? nodes * 4 : 0, size);
     s->probe_trial = sn_alloc(steps ? nodes * 4 : 0, size);
     s->mode = sn_alloc(nodes * 3, sizeof *s->mode);
     s->basis = sn_alloc(steps ? nodes * 3 * (SN_LANCZOS_MAX + 1) : 0, sizeof *s->basis);
     bool all = s->u && s->v && s->f_before && s->store && s->factors && s->a_fixed && s->ext &&
                s->contact && s->tool_pose && s->tool_set && s->tool_force && s->probe_trial &&
-               s->mode && s->basis && s->chunk_sum && s->chunk_fastest && s->tool_torque &&
-               s->tool_phase && s->load_factor && s->load_was && s->load_set && s->push &&
-               s->pushed && s->grip && s->gripped;
+               s->look.u && s->mode && s->basis && s->chunk_sum && s->chunk_fastest &&
+               s->tool_torque && s->tool_phase && s->load_factor && s->load_was && s->load_set &&
+               s->push && s->pushed && s->grip && s->gripped;
     if (!all || sn_scratch_create(net, s->precision, &s->now) != SN_OK ||
         (net->integrator != SN_INTEGRATOR_QUASI_STATIC &&
          sn_scratch_create(net, net->precision, &s->probe) != SN_OK)) {
@@ -102,7 +93,8 @@ void sn_state_destroy(sn_state *s) {
                    s->store,      s->factors,       s->a_fixed,    s->ext,         s->contact,
                    s->tool_set,   s->tool_pose,     s->mode,       s->probe_trial, s->basis,
                    s->tool_force, s->tool_torque,   s->tool_phase, s->load_factor, s->load_was,
-                   s->load_set,   s->push,          s->pushed,     s->grip,        s->gripped};
+                   s->load_set,   s->push,          s->pushed,     s->grip,        s->gripped,
+                   s->look.u};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) sn_free(all[k]);
     sn_free(s);
 }
@@ -111,7 +103,8 @@ void sn_state_destroy(sn_state *s) {
 static void find_outer(const sn_net *net, sn_state *s) {
     const sn_parts *parts = sn_state_parts(s);
     const sn_load_call load = {s->precision, s->u, parts};
-    sn_net_clear_ext(net, parts, s->ext);
+    const bool touched = s->touching;
+    if (net->load_count > 0 || touched) sn_net_clear_ext(net, parts, s->ext);
     for (int l = 0; l < net->load_count; l++)
         sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, s->time), &load,
                         s->ext);
@@ -127,7 +120,9 @@ static void find_outer(const sn_net *net, sn_state *s) {
                                    .tool_torque = s->tool_torque,
                                    .grip = s->gripped_count > 0 ? s->grip : NULL,
                                    .parts = parts};
-    s->contact_omega2 = sn_net_contact(net, &touch);
+    s->touching = sn_net_contact(net, &touch);
+    if (s->touching && !touched) sn_state_look_closer(net, s);
+    if (net->load_count == 0 && !s->touching) return;
     for (int k = 0; k < sn_net_loaded(net, parts); k++)
         for (int d = 0; d < 3; d++) {
             size_t at = 4 * (size_t)net->loaded[k] + (size_t)d;
@@ -150,6 +145,7 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
     sn_net_forces(net, &call);
     if (sn_net_loaded(net, sn_state_parts(s)) > 0) find_outer(net, s);
     sn_state_add_pushes(s);
+    if (s->touching) sn_state_ease_contact(net, s);
     sn_state_pull_tools(net, s);
 }
 
@@ -159,10 +155,25 @@ void sn_state_find_forces(const sn_net *net, sn_state *s) {
 
 // forces after a sudden change: the branches take all of it, as by a step of no length
 static void change_suddenly(const sn_net *net, sn_state *s) {
+    memset(s->ext, 0, (size_t)net->nodes * 3 * sizeof *s->ext);
     sn_net_factors(net, 1e-12 * net->until, s->factors);
     sn_net_no_impulse(net, s->factors);
     s->factors_step = 0;
     find_forces(net, s, SN_MEMORY_ADVANCE);
+}
+
+// in each precision by itself, so that the compiler makes wide comparisons of it
+static bool forces_are_finite(const sn_net *net, const sn_state *s) {
+    const size_t count = 4 * (size_t)net->nodes;
+    int bad = 0;
+    if (s->precision == SN_SINGLE) {
+        const float *f = s->now.f;
+        for (size_t k = 0; k < count; k++) bad |= !(fabsf(f[k]) <= FLT_MAX);
+    } else {
+        const double *f = s->now.f;
+        for (size_t k = 0; k < count; k++) bad |= !(fabs(f[k]) <= DBL_MAX);
+    }
+    return !bad;
 }
 
 // at rest, but for what is prescribed at the state's time
@@ -180,16 +191,14 @@ void sn_state_rest(const sn_net *net, sn_state *s) {
                     sn_state_prescribed(net, s, fixed, s->time, false));
     }
     for (int t = 0; t < net->tool_count; t++) sn_state_release(net, s, t);
-    s->omega2 = s->seen_omega2 = net->omega2;
-    s->check_way = way_first * net->edge;
-    if (net->mode) memcpy(s->mode, net->mode, nodes * 3 * sizeof *s->mode);
-    s->check_every = s->check_in = CHECK_FIRST;
-    s->moved = 0;
+    sn_state_rest_frequency(net, s);
     s->last_step = 0;
-    s->crushed = false;
+    s->touching = s->crushed = false;
     change_suddenly(net, s);
     if (sn_state_parts(s) && net->integrator == SN_INTEGRATOR_EXPLICIT)
         sn_state_find_frequency(net, s);
+    if (!forces_are_finite(net, s))
+        memset(s->now.f, 0, nodes * 4 * size); // prescribed out of shape
     memcpy(s->f_before, s->now.f, nodes * 4 * size);
     if (s->implicit) sn_implicit_reset(net, s->implicit);
 }
@@ -386,57 +395,17 @@ static void move_prescribed(const sn_net *net, sn_state *s, double h) {
         s->load_was[l] = s->load_set[l] ? s->load_factor[l] : (double)NAN;
 }
 
-static sn_frequency_call frequency_call(sn_state *s, int steps) {
-    return (sn_frequency_call){.precision = s->precision,
-                               .u = s->u,
-                               .trial = s->probe_trial,
-                               .mode = s->mode,
-                               .basis = s->basis,
-                               .steps = steps,
-                               .scratch = &s->probe,
-                               .team = s->team,
-                               .parts = sn_state_parts(s),
-                               .upright = s->crushed};
-}
-
-static void look_at_frequency(const sn_net *net, sn_state *s) {
-    sn_state_look_at_cells(net, s);
-    const bool whole = !sn_state_parts(s);
-    const sn_frequency_call call = frequency_call(s, whole ? SN_LANCZOS_WARM : 2 * SN_LANCZOS_WARM);
-    double omega2 = sn_net_frequency(net, &call);
-    // a search that follows one mode is blind to pieces apart from it: what they were as one is the
-    // least that a cut body is taken for
-    if (!whole) omega2 = fmax(omega2, net->omega2);
-    if (isfinite(omega2) && omega2 > 0) {
-        double growth = omega2 / s->seen_omega2;
-        if (fabs(growth - 1.0) > 0.1) {
-            s->check_every = s->check_every / 2 > CHECK_LEAST ? s->check_every / 2 : CHECK_LEAST;
-            s->check_way = fmax(0.5 * s->check_way, way_least * net->edge);
-        } else if (fabs(growth - 1.0) < 0.03) {
-            s->check_every = s->check_every < CHECK_MOST ? 2 * s->check_every : CHECK_MOST;
-            s->check_way = fmin(1.5 * s->check_way, way_most * net->edge);
-        }
-        s->seen_omega2 = omega2;
-        double stiffer = fmin(1.0, fmax(0.0, 2.0 * (omega2 / net->omega2 - 1.0)));
-        s->omega2 = omega2 * fmax(growth, 1.0) * (1.0 + 0.44 * stiffer);
-        if (sn_net_has_fibres(net)) s->omega2 = fmax(s->omega2, net->omega2); // all of them taut
-    }
-    s->check_in = s->check_every;
-    s->moved = 0;
-}
-
-// in each precision by itself, so that the compiler makes wide comparisons of it
-static bool forces_are_finite(const sn_net *net, const sn_state *s) {
-    const size_t count = 4 * (size_t)net->nodes;
-    int bad = 0;
-    if (s->precision == SN_SINGLE) {
-        const float *f = s->now.f;
-        for (size_t k = 0; k < count; k++) bad |= !(fabsf(f[k]) <= FLT_MAX);
-    } else {
-        const double *f = s->now.f;
-        for (size_t k = 0; k < count; k++) bad |= !(fabs(f[k]) <= DBL_MAX);
-    }
-    return !bad;
+// an equal part of dt: steps that take turns in length feed oscillations whose period is near four
+// steps and a half or less, even where each of them is within the limit
+static double choose_step(const sn_net *net, sn_state *s, double dt) {
+    double limit = sn_net_step_safety(net) * sn_net_stable_step(net, s->ruling_omega2);
+    if (net->asked_step > limit) s->warnings++;
+    if (net->asked_step > 0) limit = fmin(limit, net->asked_step);
+    if (s->touching) limit = fmin(limit, SN_TOUCH_GROWTH * sn_state_touch_step(net, s));
+    if (!(dt > limit)) return dt;
+    const double parts = dt / limit, h = parts < 1e9 ? dt / ceil(parts - 1e-9) : limit;
+    // what is left of dt has rounding errors, which no step need follow
+    return fabs(h - s->factors_step) < 1e-9 * h ? s->factors_step : h;
 }
 
 sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
@@ -445,9 +414,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
         sn_implicit_advance(net, s, dt);
         return (sn_step_info){s->time, s->last_step, s->warnings};
     }
-    double limit = sn_net_step_safety(net) * sn_net_stable_step(net, s->omega2 + s->contact_omega2);
-    double h = fmin(dt, net->asked_step > 0 ? fmin(net->asked_step, limit) : limit);
-    if (net->asked_step > limit) s->warnings++;
+    const double h = choose_step(net, s, dt);
     if (h != s->factors_step) {
         sn_net_factors(net, h, s->factors);
         s->factors_step = h;
@@ -476,11 +443,7 @@ sn_step_info sn_state_step(const sn_net *net, sn_state *s, double dt) {
         sn_state_rest(net, s);
         return (sn_step_info){s->time, h, s->warnings};
     }
-    s->moved += h * fastest;
-    s->check_in--;
-    double way = s->contact_omega2 > 0 ? fmin(s->check_way, way_touched * net->edge) : s->check_way;
-    if (s->check_in <= 0 || (s->moved > way && s->check_every - s->check_in >= CHECK_LEAST))
-        look_at_frequency(net, s);
+    sn_state_follow_frequency(net, s, h * fastest);
     return (sn_step_info){s->time, h, s->warnings};
 }
 
@@ -508,16 +471,6 @@ static bool same_branches(const sn_net *a, const sn_net *b) {
                 return false;
     }
     return true;
-}
-
-void sn_state_find_frequency(const sn_net *net, sn_state *s) {
-    const sn_frequency_call call = frequency_call(s, SN_LANCZOS_MAX);
-    double omega2 = fmax(sn_net_frequency(net, &call), sn_net_frequency(net, &call));
-    s->seen_omega2 = isfinite(omega2) && omega2 > 0 ? omega2 : net->omega2;
-    double stiffer = fmin(1.0, fmax(0.0, 2.0 * (s->seen_omega2 / net->omega2 - 1.0)));
-    s->omega2 = fmax(s->seen_omega2 * (1.0 + 0.44 * stiffer), net->omega2);
-    s->check_in = s->check_every = CHECK_LEAST;
-    s->moved = 0;
 }
 
 sn_status sn_state_move(const sn_net *from, const sn_net *to, sn_state *s) {

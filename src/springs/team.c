@@ -67,7 +67,10 @@ struct sn_team {
     void *range_memory;  ///< that `range` is aligned in
     sn_team_task *task;
     void *context;
-    _Atomic int left; ///< tasks that are not done
+    // what all write to, and what those who have nothing to do read, lie in different lines
+    char apart[LINE];
+    _Atomic int left; ///< tasks that nobody has said to be done
+    char apart_too[LINE];
     _Atomic unsigned calls;
     _Atomic int sleepers;
     _Atomic bool over;
@@ -93,14 +96,14 @@ static int take(team_range *range) {
     return -1;
 }
 
+// tells what it has done once it finds no more: a word that all write to costs as much as a task
 static void work(sn_team *team, int number) {
+    int done = 0;
     for (int k = 0; k < team->threads; k++) {
         team_range *range = &team->range[(number + k) % team->threads];
-        for (int task; (task = take(range)) >= 0;) {
-            team->task(team->context, task);
-            atomic_fetch_sub_explicit(&team->left, 1, memory_order_release);
-        }
+        for (int task; (task = take(range)) >= 0; done++) team->task(team->context, task);
     }
+    if (done > 0) atomic_fetch_sub_explicit(&team->left, done, memory_order_release);
 }
 
 static void sleep_until(sn_team *team, unsigned seen) {

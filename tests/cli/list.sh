@@ -106,9 +106,10 @@ while read -r command; do
     "$SINEW" list keys "$command" --json | paths >all
     diff all seen || die "keys of $command that no command printed"
 done <commands
-for bench in bench-springs:bench bench-fit:bench_fit bench-continuum:bench_continuum; do
+for bench in bench-springs:bench bench-haptic:bench_haptic bench-fit:bench_fit bench-continuum:bench_continuum; do
     "$SINEW" list keys ${bench%:*} --json | paths | sed 's/.*[].]//' | sort -u >all
-    sed -n 's/.*cli_put[a-z_]*([a-z]*, "\([a-zA-Z_0-9]*\)".*/\1/p' "$SOURCE/src/cli/${bench#*:}.c" | sort -u >seen
+    sed -n 's/.*cli_put[a-z_]*([a-z]*, "\([a-zA-Z_0-9]*\)".*/\1/p' "$SOURCE/src/cli/${bench#*:}.c" \
+        "$SOURCE/src/cli/bench_end.c" | sort -u >seen
     diff all seen || die "keys of ${bench%:*} are not those of its source"
 done
 # a key that is in no table is refused, and so is what is no result

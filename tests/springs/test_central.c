@@ -356,10 +356,12 @@ static void crushed_nets_recover(void **state) {
                                      : (d == 2 ? -flat * X : 0);
                 crushed = fmax(crushed, fabs(u[4 * i + d]));
             }
-        // down the slope of the energy: motion is stopped after every step, and every step looks
-        // at how stiff the net is now
-        for (int n = 0; n < 6000; n++) {
+        // down the slope of the energy: motion is stopped after every step, and before every step
+        // a look at how stiff the net is now goes from its begin to its end
+        for (int n = 0; n < 7000; n++) {
             s->check_in = 1;
+            do sn_state_follow_frequency(net, s, 0);
+            while (s->look.done > 0);
             // (h omega)^2 below 2: 0.9^2
             sn_state_step(net, s, n == 0 ? 1e-12 : 0.45 * sn_net_stable_step(net, s->omega2));
             memset(s->v, 0, (size_t)net->nodes * 4 * sizeof(double));

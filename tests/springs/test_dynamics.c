@@ -507,7 +507,7 @@ static void implicit_bears_long_steps(void **state) {
         c->springs.rung = k % 2 ? SN_RUNG_CENTRAL : SN_RUNG_COUPLED;
         add_support(c, "left", "xyz");
         CHECK_OK(sn_net_create(c, &net));
-        c->springs.step = 100 / 0.9 * net->step;
+        c->springs.step = 100 / SN_STEP_SAFETY * net->step;
         sn_net_destroy(net);
         c->springs.integrator = SN_INTEGRATOR_IMPLICIT;
         c->springs.scheme = k < 2 ? SN_SCHEME_BDF2 : SN_SCHEME_BACKWARD_EULER;

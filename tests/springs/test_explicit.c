@@ -175,6 +175,7 @@ static double after_steps(const sn_net *net, double step, int count) {
     for (int n = 0; n < count && !s->broken; n++) {
         s->check_in = 1000;
         s->moved = 0;
+        s->ruling_omega2 = 1e-3;
         sn_state_step(net, s, step);
     }
     double most = s->broken ? INFINITY : 0;
@@ -195,7 +196,8 @@ static void step_is_near_the_limit(void **state) {
         sn_net *net;
         CHECK_OK(sn_net_create(c, &net));
         double limit = 2 / highest_frequency(net, c);
-        CHECK_REL(net->step, 0.9 * limit, 0.02); // the search settles to 2e-3 in omega^2 a restart
+        CHECK_REL(net->step, SN_STEP_SAFETY * limit,
+                  0.02); // the search settles to 2e-3 in omega^2 a restart
         assert_true(after_steps(net, net->step, 3000) < 1e-4);
         assert_false(after_steps(net, 1.1 * limit, 3000) < 1e-4);
         sn_net_destroy(net);
