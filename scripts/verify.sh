@@ -47,6 +47,12 @@ line "instruction sets whose history differs from scalar's in any bit" $differin
 # published benchmarks of the finite elements
 scripts/verify-benchmarks.sh "$sinew" $out/benchmarks || bad=1
 
+# the finite elements against closed forms, with the error that they state themselves
+scripts/verify-closed.sh "$sinew" $out/closed || bad=1
+
+# hard cases from default settings
+scripts/verify-robust.sh "$sinew" $out/robust || bad=1
+
 # 95 % intervals of fits of random tissues hold the truth as often as they say
 cmake --preset check >/dev/null
 cmake --build --preset check --target verification_coverage >/dev/null

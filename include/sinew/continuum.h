@@ -10,8 +10,9 @@ extern "C" {
 
 /// Runs a case by total-Lagrangian finite elements with Newton's method (elements and steps from
 /// c->continuum). Fields: displacement [m], pressure [Pa], Green strain [1], Cauchy stress [Pa],
-/// energy density [J/m3], on the nodes and cells of c->mesh (elements with midside nodes give their
-/// corner values); velocity [m/s] in addition where the analysis is dynamic.
+/// energy density [J/m3], second Piola-Kirchhoff stress [Pa], principal stretches [1] (the largest
+/// first), on the nodes and cells of c->mesh (elements with midside nodes give their corner
+/// values); velocity [m/s] in addition where the analysis is dynamic.
 /// @param history  gets the columns of sn_case_history_columns()
 /// @return SN_OK also where Newton gave up (summary->converged false, summary->reason says why;
 /// what converged before is in the history); SN_E_DEFINITION where rigid motion is free;
@@ -66,6 +67,14 @@ typedef struct sn_refinement {
 SN_API sn_status sn_continuum_refine(const sn_case *c, int meshes, const sn_output *output,
                                      sn_run_summary *summary, sn_record *history,
                                      sn_refinement *out);
+/// The same by order, for a case of element P1: on its own mesh as it is, on the same mesh with
+/// P2P1, and with runs = 3 on cells of half the size with P2P1. The errors assume that P2P1 at
+/// least halves the error of P1 (two runs), or order 2 of P2P1 (three); no order is observed.
+/// @param runs  2 or 3
+/// @return as sn_continuum_refine(); SN_E_UNSUPPORTED (the element is quadratic already).
+SN_API sn_status sn_continuum_raise(const sn_case *c, int runs, const sn_output *output,
+                                    sn_run_summary *summary, sn_record *history,
+                                    sn_refinement *out);
 SN_API void sn_refinement_release(sn_refinement *r);
 
 //---- benchmark ----------------------------------------------------------------------------------

@@ -29,6 +29,7 @@ typedef struct sn_mesh {
     char (*region_name)[SN_NAME_MAX]; ///<                     (region_count)
     int surface_count;
     sn_surface *surface; ///<                                  (surface_count)
+    int split_cells;     ///< hexahedra, prisms and pyramids of a file that were cut into tetrahedra
 } sn_mesh;
 
 /// How a block of rectangular cells is cut into tetrahedra.
@@ -234,10 +235,14 @@ typedef struct sn_continuum_def {
     sn_analysis analysis;
     int steps;               ///< least number of steps over the case; cut back where needed
     double step;             ///< longest step, s; 0: until / steps
+    double step_tolerance;   ///< dynamic: estimated error of one step, of the largest displacement
+                             ///< so far (rms), that chooses its length; 0: all as long as they may
     double rho_infinity;     ///< dynamic: spectral radius at infinite frequency, 0 to 1
     double tolerance;        ///< relative residual at which Newton stops
     double memory_tolerance; ///< largest error of the exponentials, of G(0)
 } sn_continuum_def;
+
+#define SN_STEP_TOLERANCE 1e-4 ///< what a case file takes for `step: auto`
 
 SN_API sn_springs_def sn_springs_def_default(void);
 SN_API sn_continuum_def sn_continuum_def_default(void);

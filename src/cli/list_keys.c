@@ -293,6 +293,7 @@ static const key_row runs[] = {
     {"probes.*", "m or N", "one component of a probe, reaction or tool"},
     {"refinement", "", "with --refine: what finer meshes say"},
     {"refinement.meshes", "", "coarse to fine, the case's own first"},
+    {"refinement.meshes[].model", "", "element"},
     {"refinement.meshes[].nodes", "", "of the mesh, with midsides"},
     {"refinement.meshes[].cells", "", "tetrahedra"},
     {"refinement.meshes[].unknowns", "", "of its system"},

@@ -233,9 +233,13 @@ static void print_summary(const sn_run_summary *s, const sn_record *history,
 }
 
 typedef struct run_options {
-    const char *engine, *folder, *resume;
+    const char *engine, *folder, *resume, *by;
     int refine;
 } run_options;
+
+static bool run_by_order(const char *by) {
+    return by && strcmp(by, "order") == 0;
+}
 
 // Engines save their state beside the results, and go on from there with --resume.
 static sn_status run_engine(const sn_case *c, const sn_output *output, const run_options *o,
@@ -243,7 +247,8 @@ static sn_status run_engine(const sn_case *c, const sn_output *output, const run
     char folder[4096];
     void *state = NULL;
     if (o->refine) // sn_alloc'd parts of the estimate belong to the context
-        return sn_continuum_refine(c, o->refine, output, summary, history, &r->refinement);
+        return (run_by_order(o->by) ? sn_continuum_raise : sn_continuum_refine)(
+            c, o->refine, output, summary, history, &r->refinement);
     sn_restart restart = {0};
     if (o->folder) {
         snprintf(folder, sizeof folder, "%s", o->folder);
@@ -285,6 +290,7 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
     }
     status = run_engine(c, &output, o, &r, summary, history);
     cli_progress_end(&r.progress);
+    run_mesh_note(c->mesh, summary);
     if (status != SN_OK) {
         status = sn_fail_within(status, "%s", path);
         goto fail;
@@ -312,6 +318,9 @@ static int check_options(const run_options *o) {
     if (o->refine && o->resume) return cli_refuse("run: --refine and --resume exclude each other");
     if (o->refine == 1 || o->refine > SN_REFINE_MAX)
         return cli_refuse("--refine: found %d, expected 2 or 3 meshes", o->refine);
+    if (o->by && !o->refine) return cli_refuse("run: --by says how --refine refines: give both");
+    if (o->by && !run_by_order(o->by) && strcmp(o->by, "cells") != 0)
+        return cli_refuse("--by: found \"%s\", expected cells or order", o->by);
     return CLI_DONE;
 }
 
@@ -324,11 +333,13 @@ static int run(const cli_command *command, int argc, char **argv) {
          "writes report.html, summary.json, history.csv and fields.pvd there"},
         {"refine", CLI_INTEGER, "N", NULL, &o.refine,
          "continuum: 2 or 3 meshes of halved cells, and the error they show"},
+        {"by", CLI_TEXT, "NAME", NULL, &o.by,
+         "with --refine: cells (halved), or order (P1, P2P1, P2P1 on halved cells)"},
         {"resume", CLI_TEXT, "DIR", NULL, &o.resume,
          "goes on where the run of the same case into DIR was killed"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 4, &arguments);
+    int code = cli_parse(command, argc, argv, options, 5, &arguments);
     if (code >= 0) return code;
     if (arguments.count != 1)
         return cli_refuse("run: expected one case file, got %d", arguments.count);
@@ -349,6 +360,7 @@ static int run(const cli_command *command, int argc, char **argv) {
 }
 
 const cli_command cli_run = {
-    "run", "CASE.yaml --engine springs|continuum [--out DIR] [--refine N] [--resume DIR]",
+    "run",
+    "CASE.yaml --engine springs|continuum [--out DIR] [--refine N] [--by NAME] [--resume DIR]",
     "one case through the springs or the finite elements",
     "sinew run examples/muscle/strip-1s.yaml --engine springs --out out", run};

@@ -11,6 +11,9 @@ void run_refinement_print(const sn_refinement *r);
 /// Adds them to the report.
 void run_refinement_report(const sn_refinement *r, sn_report *report);
 
+/// Adds to the note what reading did to the cells of the mesh.
+void run_mesh_note(const sn_mesh *mesh, sn_run_summary *s);
+
 #define RUN_STATE "state.bin" ///< the state of an unfinished run in its folder
 
 /// Reads FOLDER/state.bin for --resume; sn_free() the bytes.

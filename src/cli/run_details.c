@@ -11,6 +11,7 @@
 
 static json_t *mesh_json(const sn_run_summary *s) {
     json_t *json = json_object();
+    cli_put_text(json, "model", s->model);
     cli_put_integer(json, "nodes", s->nodes);
     cli_put_integer(json, "cells", s->cells);
     cli_put_integer(json, "unknowns", s->unknowns);
@@ -83,6 +84,16 @@ void run_refinement_report(const sn_refinement *r, sn_report *report) {
     if (*r->reason) sn_report_text(report, "The refinement ended early: %s", r->reason);
     sn_free(text);
     sn_free(cells);
+}
+
+//---- the mesh ------------------------------------------------------------------------------------
+
+void run_mesh_note(const sn_mesh *mesh, sn_run_summary *s) {
+    size_t used = strlen(s->note);
+    if (mesh->split_cells == 0) return;
+    snprintf(s->note + used, sizeof s->note - used,
+             "%s%d hexahedra, prisms or pyramids of the mesh were cut into tetrahedra",
+             used ? "; " : "", mesh->split_cells);
 }
 
 //---- --resume ------------------------------------------------------------------------------------

@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#define STIFFEST 20.0 // bulk over shear modulus whose waves are still of interest
+
 //---- mass ---------------------------------------------------------------------------------------
 
 // Corners of node a of a cell: one of a corner, the ends of a midside.
@@ -174,26 +176,50 @@ void sn_fe_inertia_tangent(const sn_fe_inertia *m, const sn_fe_pattern *p, doubl
     for (int k = 0; k < p->row_start[p->rows]; k++) entry[k] += by * m->mass[k];
 }
 
+void sn_fe_inertia_judge(const sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p,
+                         const double *x, double *error, double *way) {
+    double change = 0.0, moved = 0.0, h = m->step;
+    for (int n = 0; n < 3 * s->nodes; n++) {
+        double by = m->next_a[n] - m->a[n];
+        change += p->row[n] == SN_FE_PRESCRIBED ? 0.0 : by * by;
+        moved += x[n] * x[n];
+    }
+    *error = m->moving ? (m->beta - 1.0 / 6.0) * h * h * sqrt(change / (3 * s->nodes)) : 0.0;
+    *way = fmax(m->way, sqrt(moved / (3 * s->nodes)));
+}
+
+double sn_fe_inertia_transit(const sn_case *c, const sn_fe_space *s) {
+    double least = (double)INFINITY;
+    for (int b = 0; b < s->batches; b++) {
+        const sn_tissue *tissue = c->tissue + s->batch_region[b];
+        sn_moduli moduli;
+        sn_tissue_moduli(tissue, &moduli);
+        // waves of pressure in what hardly changes its volume are not what a step is to resolve
+        double stiff = fmin(moduli.bulk, STIFFEST * moduli.shear) + 4.0 / 3.0 * moduli.shear;
+        double speed = sqrt(stiff / tissue->density);
+        for (int at = 0; at < s->batch_count[b]; at++)
+            least = fmin(least, cbrt(6.0 * s->volume[b * s->batch_cells + at]) / speed);
+    }
+    return least;
+}
+
 void sn_fe_inertia_commit(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p,
                           const double *x, double *residual) {
-    double h = m->step, lag = m->alpha_f - m->alpha_m, error = 0.0, way = 0.0;
+    double h = m->step, lag = m->alpha_f - m->alpha_m, error;
     if (!(h > 0.0)) return;
+    sn_fe_inertia_judge(m, s, p, x, &error, &m->way);
+    m->error = fmax(m->error, error);
     memcpy(m->reaction, m->next_r, 3 * (size_t)s->nodes * sizeof *m->reaction);
     for (int n = 0; n < 3 * s->nodes; n++) {
         bool known = p->row[n] == SN_FE_PRESCRIBED;
         double a = m->next_a[n];
         // the formulas' a_{n+1} belongs to a time that is lag h earlier
         m->work[n] = known ? a : a + lag * (a - m->a[n]);
-        error += known ? 0.0 : (a - m->a[n]) * (a - m->a[n]);
-        way += x[n] * x[n];
         m->v[n] = known ? m->known_v[n] : m->v[n] + h * ((1.0 - m->gamma) * m->a[n] + m->gamma * a);
         m->u[n] = x[n];
         m->a[n] = a;
         m->r[n] = m->next_r[n];
     }
-    if (m->moving) // the first step starts without an acceleration
-        m->error = fmax(m->error, (m->beta - 1.0 / 6.0) * h * h * sqrt(error / (3 * s->nodes)));
-    m->way = fmax(m->way, sqrt(way / (3 * s->nodes)));
     m->moving = true;
     multiply(m, s, m->work, m->reaction);
     for (int n = 0; n < 3 * s->nodes; n++)

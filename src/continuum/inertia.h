@@ -56,6 +56,13 @@ double sn_fe_inertia_add(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pat
                          const double *x, double *residual);
 /// Adds the mass to the entries of the tangent.
 void sn_fe_inertia_tangent(const sn_fe_inertia *m, const sn_fe_pattern *p, double *entry);
+/// Estimates the error of the step to x, the state of the last sn_fe_inertia_add().
+/// @param error  rms, m; 0 for the first step, which starts without an acceleration
+/// @param way    rms of the largest displacement so far, x included, m
+void sn_fe_inertia_judge(const sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p,
+                         const double *x, double *error, double *way);
+/// The time that a wave takes through the smallest cell, s.
+double sn_fe_inertia_transit(const sn_case *c, const sn_fe_space *s);
 /// Accepts x, the state of the last sn_fe_inertia_add(), and makes `residual` the forces that
 /// supports exert: see sn_fe_inertia_reactions().
 void sn_fe_inertia_commit(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p,

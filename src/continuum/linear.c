@@ -93,21 +93,33 @@ static void combine(double *plus, const double *minus, size_t count, double s, b
         plus[k] = even ? (plus[k] + minus[k]) / (2.0 * s * s) : (plus[k] - minus[k]) / (2.0 * s);
 }
 
+// 1 + the linear principal strains: turning the strain round turns their order round.
+static void combine_stretches(double *plus, const double *minus, size_t cells, double s) {
+    for (size_t n = 0; n < cells; n++) {
+        double *l = plus + 3 * n;
+        for (int k = 0; k < 3; k++) l[k] = 1.0 + (l[k] - minus[3 * n + 2 - (size_t)k]) / (2.0 * s);
+    }
+}
+
 static sn_status emit(sn_fe_march *m, double s) {
     sn_fe_measure *f = m->measure;
     if (!m->output || !m->output->frame) return SN_OK;
     size_t corners = (size_t)m->problem->space->corners, cells = (size_t)m->c->mesh->cell_count;
-    double *const field[] = {f->pressure, f->strain, f->stress, f->energy};
-    const size_t count[] = {corners, 6 * cells, 6 * cells, cells};
-    double *minus = sn_alloc(corners + 13 * cells, sizeof *minus), *to = minus;
+    enum { FIELDS = 6, ENERGY = 4, STRETCH = 5 };
+    double *const field[FIELDS] = {f->pressure,  f->strain, f->stress,
+                                   f->reference, f->energy, f->stretch};
+    const size_t count[FIELDS] = {corners, 6 * cells, 6 * cells, 6 * cells, cells, 3 * cells};
+    double *minus = sn_alloc(corners + 22 * cells, sizeof *minus), *to = minus;
     if (!minus) return SN_E_MEMORY;
     scale_state(m, -s, m->guess);
     sn_fe_measure_fill(f, m->problem, m->guess);
-    for (int k = 0; k < 4; to += count[k], k++) memcpy(to, field[k], count[k] * sizeof *to);
+    for (int k = 0; k < FIELDS; to += count[k], k++) memcpy(to, field[k], count[k] * sizeof *to);
     scale_state(m, s, m->guess);
     sn_fe_measure_fill(f, m->problem, m->guess);
     to = minus;
-    for (int k = 0; k < 4; to += count[k], k++) combine(field[k], to, count[k], s, k == 3);
+    for (int k = 0; k < STRETCH; to += count[k], k++)
+        combine(field[k], to, count[k], s, k == ENERGY);
+    combine_stretches(f->stretch, to, cells, s);
     sn_free(minus);
     memcpy(f->displacement, m->x, 3 * corners * sizeof *f->displacement);
     return sn_fe_measure_emit(f, m->problem, m->output);

@@ -7,6 +7,11 @@
 // least residual (a smooth path wants the highest, contact and friction a low one); after a corner
 // of a history, or where that fails, the tangent at the start of the step carries the prescribed
 // increments into the body.
+//
+// In a dynamic run with a step_tolerance the estimated error of a step, of third order in its
+// length, chooses the next: 0.9 of what would just do, at most twice the last. A step that errs by
+// more is taken back. Lengths are left alone while they are within a fifth of that, because
+// generalised-alpha is at its best with equal steps.
 #include "continuum/state.h"
 
 #include <math.h>
@@ -16,6 +21,10 @@
 enum { CUTBACKS = 12 };     // halvings of the shortest planned step
 #define REGROW 1.5          // of the step after a success
 #define PROGRESS_EVERY 0.25 // seconds between two texts
+#define AIM 0.9             // of the step that would err by just the tolerance
+#define QUICKEST 2.0        // growth of the steps by accuracy
+#define SLOWEST 0.1         // cut of a step by accuracy
+#define IDLE 0.2            // change of the steps that is not worth it
 
 //---- life ---------------------------------------------------------------------------------------
 
@@ -27,16 +36,26 @@ static bool remembers(const sn_case *c) {
     return false;
 }
 
+// A step below which accuracy cuts no further: one mode errs by (beta - 1/6)(omega h)^3 or so, and
+// no mode of the mesh is faster than some 15 over the transit time (quadratic elements), so that
+// this one keeps the tolerance in all of them.
+static double shortest_useful(const sn_fe_march *m) {
+    double part = cbrt(m->c->continuum.step_tolerance) / 8.0;
+    return fmin(part * sn_fe_inertia_transit(m->c, m->problem->space), m->schedule.longest);
+}
+
 sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *output,
                            sn_run_summary *summary, sn_record *history) {
     *m = (sn_fe_march){.c = c, .output = output, .summary = summary, .history = history};
-    m->limit = (double)INFINITY;
+    m->limit = m->pace = (double)INFINITY;
     m->told = m->started = sn_clock();
     SN_TRY(sn_fe_schedule_create(c, remembers(c), &m->schedule));
     SN_TRY(sn_fe_problem_create(c, m->schedule.shortest, &m->problem));
     SN_TRY(sn_fe_newton_init(&m->newton, m->problem, c->continuum.tolerance));
     SN_TRY(sn_case_history_columns(c, history));
     SN_TRY(sn_fe_measure_create(m->problem, history, output && output->frame, &m->measure));
+    if (m->problem->inertia && c->continuum.step_tolerance > 0.0)
+        m->pace = m->least_pace = shortest_useful(m);
     size_t dofs = (size_t)m->problem->space->dofs;
     m->x = sn_alloc(dofs, sizeof *m->x);
     bool room = true;
@@ -111,6 +130,24 @@ static sn_status attempt(sn_fe_march *m, sn_fe_level level, sn_fe_outcome *out) 
     return SN_OK;
 }
 
+// Whether the guess that converged is accurate enough, and how long the next step may be.
+static bool accurate(sn_fe_march *m, double step) {
+    const sn_fe_problem *p = m->problem;
+    double error, way, tolerance = m->c->continuum.step_tolerance, last = m->pace;
+    if (!isfinite(m->pace)) return true;
+    sn_fe_inertia_judge(p->inertia, p->space, p->pattern, m->guess, &error, &way);
+    bool good = error <= tolerance * way, blind = !good && step <= m->least_pace * (1.0 + 1e-9);
+    double want = error > 0.0 ? AIM * step * cbrt(tolerance * way / error) : (double)INFINITY;
+    if (good && fabs(want / last - 1.0) > IDLE)
+        m->pace = fmin(want, QUICKEST * last);
+    else if (!good)
+        m->pace = fmin(fmax(want, SLOWEST * step), (1.0 - IDLE) * step);
+    m->pace = fmin(fmax(m->pace, m->least_pace), m->schedule.longest);
+    m->blind += blind;
+    m->inaccurate += !good && !blind;
+    return good || blind;
+}
+
 // Takes the guess as the new state.
 static void accept(sn_fe_march *m, sn_fe_level level, const sn_fe_outcome *out) {
     sn_fe_problem *p = m->problem;
@@ -147,6 +184,7 @@ sn_status sn_fe_march_note(sn_fe_march *m, double wall, double length) {
     m->wall[m->walls++] = wall;
     s->steps++;
     s->step_s = s->step_s > 0.0 ? fmin(s->step_s, length) : length;
+    m->longest_used = fmax(m->longest_used, length);
     return SN_OK;
 }
 
@@ -190,10 +228,10 @@ static void give_up(sn_fe_march *m, bool start, double at, double step, const ch
 // From `at` to `end`: in time towards a stop of the schedule, or, at the start, in the scale of the
 // loads from 0 to 1.
 static sn_status walk(sn_fe_march *m, bool start, double at, double end, int stop) {
-    double least = (start ? 1.0 : m->schedule.shortest) / (1 << CUTBACKS);
     while (at < end && !m->stopped) {
         sn_fe_outcome out;
-        double clock = sn_clock(), room = fmin(m->wish, m->limit);
+        double clock = sn_clock(), room = fmin(fmin(m->wish, m->limit), m->pace);
+        double least = (start ? 1.0 : fmin(m->schedule.shortest, m->pace)) / (1 << CUTBACKS);
         double step =
             start ? fmin(room, end - at) : sn_fe_schedule_step(&m->schedule, stop, at, room);
         double to = at + step > end - 1e-9 * step ? end : at + step;
@@ -204,6 +242,10 @@ static sn_status walk(sn_fe_march *m, bool start, double at, double end, int sto
             if (0.5 * step < least) give_up(m, start, at, step, out.reason);
             m->limit = 0.5 * step;
             m->past_count = 0;
+            continue;
+        }
+        if (!accurate(m, level.step)) {
+            m->summary->cutbacks++;
             continue;
         }
         accept(m, level, &out);

@@ -27,6 +27,11 @@ typedef struct sn_fe_march {
     double *force;              ///< internal forces of x, N                        (dofs)
     sn_fe_level reached;        ///< level of x
     double wish, limit;         ///< longest next step: by the schedule, by what failed before
+    double pace;                ///< longest next step by accuracy; INFINITY where steps are fixed
+    double least_pace;          ///< below which accuracy cuts no step, s
+    double longest_used;        ///< step, s
+    int inaccurate;             ///< steps that were cut back because they erred by too much
+    int blind;                  ///< steps of least_pace that were accepted all the same
     double *wall;               ///< seconds of each step
     size_t wall_room, walls;
     int rounded;             ///< steps accepted at rounding level

@@ -40,27 +40,58 @@ static void cauchy(const sn_fe_points *p, int n, double out[6]) {
     }
 }
 
+// Roots of the eigenvalues of C = 1 + 2 E at point n, the largest first. The trigonometric solution
+// of the characteristic equation, scaled by E so that small strains keep their digits.
+// Source: Smith, Comm. ACM 4 (1961) 168.
+static void stretches(const sn_fe_points *p, int n, double out[3]) {
+    double e[6], mean = 0.0, size = 0.0;
+    for (int k = 0; k < 6; k++) e[k] = p->E[k * N + n];
+    for (int k = 0; k < 3; k++) mean += e[k] / 3.0;
+    for (int k = 0; k < 3; k++) {
+        e[k] -= mean;
+        size += e[k] * e[k] + 2.0 * e[3 + k] * e[3 + k];
+    }
+    size = sqrt(size / 6.0);
+    double det = e[0] * (e[1] * e[2] - e[4] * e[4]) - e[3] * (e[3] * e[2] - e[4] * e[5]) +
+                 e[5] * (e[3] * e[4] - e[1] * e[5]);
+    double half = size > 0.0 ? det / (2.0 * size * size * size) : 0.0;
+    double angle = acos(fmax(-1.0, fmin(1.0, half))) / 3.0;
+    for (int k = 0; k < 3; k++) {
+        double value = mean + 2.0 * size * cos(angle - 2.0 * k * acos(-1.0) / 3.0);
+        out[k] = sqrt(fmax(0.0, 1.0 + 2.0 * value));
+    }
+    double middle = out[2]; // the order of the angles is largest, middle, smallest
+    out[2] = fmin(out[1], out[2]);
+    out[1] = fmax(out[1], middle);
+}
+
 // Averages of one cell; `extra` is the mean of -tr(sigma)/3 without the unknown pressure.
 static void average_cell(const sn_fe_problem *p, int batch, int at, sn_fe_measure *m,
                          double *extra) {
     const sn_fe_space *s = p->space;
     const sn_fe_points *v = &p->work->points;
     int cell = s->slot[batch * s->batch_cells + at];
-    double strain[6] = {0}, stress[6] = {0}, energy = 0.0;
+    double strain[6] = {0}, stress[6] = {0}, reference[6] = {0}, stretch[3] = {0}, energy = 0.0;
     *extra = 0.0;
     for (int q = 0; q < s->element.points; q++) {
         int n = q * s->batch_cells + at;
-        double w = s->element.weight[q], sigma[6];
+        double w = s->element.weight[q], sigma[6], at_point[3];
         cauchy(v, n, sigma);
+        stretches(v, n, at_point);
         for (int k = 0; k < 6; k++) {
             strain[k] += w * v->E[k * N + n];
             stress[k] += w * sigma[k];
+            reference[k] += w * v->S[k * N + n];
         }
+        for (int k = 0; k < 3; k++) stretch[k] += w * at_point[k];
         energy += w * v->W[n];
         *extra -= w * ((sigma[0] + sigma[1] + sigma[2]) / 3.0 - (s->element.mixed ? v->p[n] : 0.0));
     }
-    if (s->rotated) turn(sn_fe_axes(s, batch, at), strain);
-    if (s->rotated) turn(sn_fe_axes(s, batch, at), stress);
+    const double *axes = s->rotated ? sn_fe_axes(s, batch, at) : NULL;
+    double *const tensors[] = {strain, stress, reference};
+    for (int k = 0; axes && k < 3; k++) turn(axes, tensors[k]);
+    memcpy(m->reference + 6 * cell, reference, sizeof reference);
+    memcpy(m->stretch + 3 * cell, stretch, sizeof stretch);
     memcpy(m->strain + 6 * cell, strain, sizeof strain);
     memcpy(m->stress + 6 * cell, stress, sizeof stress);
     m->energy[cell] = energy;
@@ -91,14 +122,16 @@ void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *
 }
 
 sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_output *output) {
-    sn_field fields[7] = {
+    sn_field fields[9] = {
         {"displacement", "m", SN_ON_NODES, 3, m->displacement},
         {"pressure", "Pa", SN_ON_NODES, 1, m->pressure},
         {"green_strain", "1", SN_ON_CELLS, 6, m->strain},
         {"cauchy_stress", "Pa", SN_ON_CELLS, 6, m->stress},
         {"energy_density", "J/m3", SN_ON_CELLS, 1, m->energy},
+        {"second_pk_stress", "Pa", SN_ON_CELLS, 6, m->reference},
+        {"principal_stretches", "1", SN_ON_CELLS, 3, m->stretch},
     };
-    int count = 5;
+    int count = 7;
     if (p->inertia) // corners first
         fields[count++] = (sn_field){"velocity", "m/s", SN_ON_NODES, 3, p->inertia->v};
     if (p->space->rotated) fields[count++] = (sn_field){"fibre", "1", SN_ON_CELLS, 3, m->fibre};
@@ -183,9 +216,10 @@ static void fill_fibres(const sn_fe_problem *p, double *fibre) {
 void sn_fe_measure_destroy(sn_fe_measure *m, const sn_case *c) {
     if (!m) return;
     for (int k = 0; m->reaction && k < c->probe_count; k++) sn_free(m->reaction[k]);
-    void *const parts[] = {m->displacement, m->pressure,     m->strain,   m->stress,
-                           m->energy,       m->row,          m->reaction, m->reaction_count,
-                           m->point_cell,   m->point_weight, m->fibre};
+    void *const parts[] = {m->displacement, m->pressure,       m->strain,     m->stress,
+                           m->reference,    m->stretch,        m->energy,     m->row,
+                           m->reaction,     m->reaction_count, m->point_cell, m->point_weight,
+                           m->fibre};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(m);
 }
@@ -203,6 +237,8 @@ sn_status sn_fe_measure_create(const sn_fe_problem *p, const sn_record *history,
     m->pressure = sn_alloc(corners, sizeof *m->pressure);
     m->strain = sn_alloc(6 * cells, sizeof *m->strain);
     m->stress = sn_alloc(6 * cells, sizeof *m->stress);
+    m->reference = sn_alloc(6 * cells, sizeof *m->reference);
+    m->stretch = sn_alloc(3 * cells, sizeof *m->stretch);
     m->energy = sn_alloc(cells, sizeof *m->energy);
     m->fibre = sn_alloc(3 * cells, sizeof *m->fibre);
     m->row = sn_alloc((size_t)m->columns, sizeof *m->row);
@@ -210,8 +246,9 @@ sn_status sn_fe_measure_create(const sn_fe_problem *p, const sn_record *history,
     m->reaction_count = sn_alloc(probes, sizeof *m->reaction_count);
     m->point_cell = sn_alloc(probes, sizeof *m->point_cell);
     m->point_weight = sn_alloc(probes, sizeof *m->point_weight);
-    if (!m->displacement || !m->pressure || !m->strain || !m->stress || !m->energy || !m->fibre ||
-        !m->row || !m->reaction || !m->reaction_count || !m->point_cell || !m->point_weight)
+    if (!m->displacement || !m->pressure || !m->strain || !m->stress || !m->reference ||
+        !m->stretch || !m->energy || !m->fibre || !m->row || !m->reaction || !m->reaction_count ||
+        !m->point_cell || !m->point_weight)
         goto fail;
     if (fields) fill_fibres(p, m->fibre);
     SN_TRY_GOTO(status, find_probes(p, m));

@@ -1,7 +1,9 @@
 // What a run hands out: fields, a row of the history, energies.
 // SPDX-License-Identifier: Apache-2.0
 //
-// Cell values are volume averages over the quadrature points. The pressure is -tr(Cauchy stress)/3,
+// Cell values are volume averages over the quadrature points; of the second Piola-Kirchhoff stress
+// in the axes of space, of the principal stretches (roots of the eigenvalues of C) one by one, the
+// largest first. The pressure is -tr(Cauchy stress)/3,
 // positive in compression: the mean of the cells around a node by volume; for P2P1 the unknown
 // pressure of the node (sign turned) plus that mean of what the distortional stress adds.
 #pragma once
@@ -12,7 +14,9 @@ typedef struct sn_fe_measure {
     double *displacement; ///< (corners x 3)
     double *pressure;     ///< (corners)
     double *strain;       ///< (cells x 6)
-    double *stress;       ///< (cells x 6)
+    double *stress;       ///< Cauchy (cells x 6)
+    double *reference;    ///< second Piola-Kirchhoff stress (cells x 6)
+    double *stretch;      ///< principal stretches (cells x 3)
     double *energy;       ///< (cells)
     double *fibre;        ///< at rest                      (cells x 3)
     double *row;          ///< a row of the history

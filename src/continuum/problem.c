@@ -55,6 +55,7 @@ sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem 
     if (!dynamic) { // inertia holds what the supports leave free
         sn_fe_rigid_find(p->space);
         SN_TRY_GOTO(status, sn_fe_rigid_parts(p->space));
+        SN_TRY_GOTO(status, sn_fe_rigid_hinges(p->space, c->mesh));
         SN_TRY_GOTO(status, sn_fe_rigid_check(p->space, c, p->boundary));
     }
     SN_TRY_GOTO(status, sn_fe_pattern_create(p->space, &p->pattern));
@@ -105,6 +106,14 @@ void sn_fe_problem_weigh(sn_fe_problem *p, const sn_fe_balance *balance) {
                        force_reference(p, balance) / sqrt(scale));
 }
 
+// Reactions beyond this are of a state that stiffened out of all proportion on Newton's way:
+// measured by them, whatever is out of balance would look small. A lever of 1 : 1e5 is still
+// believed, and where nothing but prescribed motion acts, forces of 1e4 strains of the tissue at
+// rest.
+static double most_reaction(const sn_fe_problem *p, double loads) {
+    return fmax(1e5 * fmax(loads, p->reference), 1e9 * p->least_reference);
+}
+
 static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) {
     const sn_fe_space *s = p->space;
     double free = 0.0, held = 0.0, external = 0.0, flux = 0.0, scale = 0.0;
@@ -118,7 +127,8 @@ static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) 
         scale += p->flux_scale[a] * p->flux_scale[a];
     }
     out->force = sqrt(free);
-    out->reference = fmax(sqrt(fmax(held, external)), inertia);
+    double loads = fmax(sqrt(external), inertia);
+    out->reference = fmax(fmin(sqrt(held), most_reaction(p, loads)), loads);
     out->volume = scale > 0.0 ? sqrt(flux / scale) : 0.0;
     out->error = fmax(out->force / force_reference(p, out), out->volume);
     out->sound = isfinite(out->error);

@@ -1,11 +1,11 @@
-// A case on finer and finer meshes: observed order, extrapolated values, estimated errors.
-// SPDX-License-Identifier: Apache-2.0
-// Source: Roache, J. Fluids Eng. 116 (1994) 405 (grid convergence index).
+// A case on finer and finer meshes or of a higher order: observed order, extrapolated values,
+// estimated errors. SPDX-License-Identifier: Apache-2.0 Source: Roache, J. Fluids Eng. 116 (1994)
+// 405 (grid convergence index).
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#include "sinew/continuum.h"
+#include "continuum/refine.h"
 
 #define ASSUMED_ORDER 2.0 // what displacement and reaction reach where edges and contact limit them
 #define LEAST_ORDER 0.5   // outside this band three meshes show no order
@@ -15,8 +15,7 @@
 
 //---- one quantity -------------------------------------------------------------------------------
 
-// `floor` is the part of a value that the solver leaves open.
-static void extrapolate(sn_refined *q, int meshes, double floor) {
+void sn_fe_extrapolate(sn_refined *q, int meshes, double floor) {
     const double *f = q->value;
     double last = f[meshes - 1] - f[meshes - 2], largest = fabs(last), safe = SAFE_ASSUMED;
     q->order = ASSUMED_ORDER;
@@ -37,6 +36,28 @@ static void extrapolate(sn_refined *q, int meshes, double floor) {
     }
 }
 
+// Two runs: the quadratic value stands for the limit, and the linear one errs by at most twice the
+// difference where the higher order at least halves the error; the quadratic one by the difference.
+// Three: the quadratic values are two meshes, and what they leave is added to the linear one's.
+void sn_fe_extrapolate_order(sn_refined *q, int runs, double floor) {
+    const double *f = q->value;
+    double raised = fabs(f[1] - f[0]);
+    if (runs == 2) {
+        q->order = ASSUMED_ORDER;
+        q->extrapolated = f[1];
+        q->error[0] = fmax(2.0 * raised, floor);
+        q->error[1] = fmax(raised, floor);
+        return;
+    }
+    sn_refined quadratic = {.value = {f[1], f[2]}};
+    sn_fe_extrapolate(&quadratic, 2, floor);
+    q->order = quadratic.order;
+    q->extrapolated = quadratic.extrapolated;
+    q->error[0] = SAFE_OBSERVED * fabs(f[0] - q->extrapolated) + quadratic.error[1];
+    q->error[1] = quadratic.error[0];
+    q->error[2] = quadratic.error[1];
+}
+
 // The largest end value among the three directions of a probe: what small components are small to.
 static double scale_of(const sn_record *const *history, int meshes, int column) {
     int first = 1 + (column - 1) / 3 * 3;
@@ -47,7 +68,8 @@ static double scale_of(const sn_record *const *history, int meshes, int column) 
     return scale;
 }
 
-static sn_status sum_up(const sn_case *c, const sn_record *const *history, sn_refinement *out) {
+static sn_status sum_up(const sn_case *c, bool order, const sn_record *const *history,
+                        sn_refinement *out) {
     int columns = history[0]->series_count;
     if (out->meshes < 2) return SN_OK;
     for (int m = 0; m < out->meshes; m++)
@@ -65,12 +87,16 @@ static sn_status sum_up(const sn_case *c, const sn_record *const *history, sn_re
         for (int m = 0; m < out->meshes; m++)
             q->value[m] = energy ? out->run[m].elastic_J
                                  : history[m]->series[k + 1].value[history[m]->rows - 1];
-        extrapolate(q, out->meshes, c->continuum.tolerance * scale);
+        double floor = c->continuum.tolerance * scale;
+        if (order)
+            sn_fe_extrapolate_order(q, out->meshes, floor);
+        else
+            sn_fe_extrapolate(q, out->meshes, floor);
     }
     return SN_OK;
 }
 
-//---- the meshes ---------------------------------------------------------------------------------
+//---- the runs ----------------------------------------------------------------------------------
 
 static sn_status finer(const sn_case *c, sn_case **fine) {
     sn_mesh *mesh = NULL;
@@ -88,6 +114,19 @@ static sn_status finer(const sn_case *c, sn_case **fine) {
     }
     (*fine)->shape = def; // sn_case_on_mesh() clears it with another number of cells
     (*fine)->has_shape = c->has_shape;
+    return SN_OK;
+}
+
+// The same mesh with the quadratic element that any tissue may have.
+static sn_status raised(const sn_case *c, sn_case **high) {
+    sn_mesh *mesh = NULL;
+    SN_TRY(sn_mesh_copy(c->mesh, &mesh));
+    sn_status status = sn_case_on_mesh(c, mesh, high);
+    if (status != SN_OK) {
+        sn_mesh_destroy(mesh);
+        return status;
+    }
+    (*high)->continuum.element = SN_ELEMENT_P2P1;
     return SN_OK;
 }
 
@@ -135,8 +174,8 @@ void sn_refinement_release(sn_refinement *r) {
     *r = (sn_refinement){0};
 }
 
-sn_status sn_continuum_refine(const sn_case *c, int meshes, const sn_output *output,
-                              sn_run_summary *summary, sn_record *history, sn_refinement *out) {
+static sn_status go(const sn_case *c, int meshes, bool order, const sn_output *output,
+                    sn_run_summary *summary, sn_record *history, sn_refinement *out) {
     sn_case *body[SN_REFINE_MAX] = {0};
     sn_record *course[SN_REFINE_MAX] = {history};
     sn_status status = SN_OK;
@@ -145,15 +184,16 @@ sn_status sn_continuum_refine(const sn_case *c, int meshes, const sn_output *out
         return sn_fail(SN_E_RANGE, "refine: found %d meshes, expected 2 or 3", meshes);
     for (int m = 0; m < meshes && out->meshes == m; m++) {
         share s = {output, m, meshes};
+        const sn_case *last = m > 1 ? body[m - 1] : c;
         if (m > 0) SN_TRY_GOTO(status, sn_record_create(c->name, &course[m]));
-        status = m > 0 ? finer(m > 1 ? body[m - 1] : c, &body[m]) : SN_OK;
+        if (m > 0) status = order && m == 1 ? raised(last, &body[m]) : finer(last, &body[m]);
         if (status == SN_OK) status = run_mesh(m > 0 ? body[m] : c, &s, course[m], out);
         if (m == 0) *summary = out->run[0];
         if (status != SN_OK && m == 0) goto fail;
         if (status != SN_OK) // what the coarser meshes say is worth more than an error
             snprintf(out->reason, sizeof out->reason, "mesh %d: %.200s", m + 1, sn_error_text());
     }
-    status = sum_up(c, (const sn_record *const *)course, out);
+    status = sum_up(c, order, (const sn_record *const *)course, out);
 fail:
     for (int m = 1; m < meshes; m++) {
         sn_record_destroy(course[m]);
@@ -161,4 +201,20 @@ fail:
     }
     if (status != SN_OK) sn_refinement_release(out);
     return status;
+}
+
+sn_status sn_continuum_refine(const sn_case *c, int meshes, const sn_output *output,
+                              sn_run_summary *summary, sn_record *history, sn_refinement *out) {
+    return go(c, meshes, false, output, summary, history, out);
+}
+
+sn_status sn_continuum_raise(const sn_case *c, int runs, const sn_output *output,
+                             sn_run_summary *summary, sn_record *history, sn_refinement *out) {
+    if (c->continuum.element != SN_ELEMENT_P1) {
+        *out = (sn_refinement){0};
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "refine by order: no element stands above the quadratic ones; start from "
+                       "element: P1, or refine by cells");
+    }
+    return go(c, runs, true, output, summary, history, out);
 }

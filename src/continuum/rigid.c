@@ -3,6 +3,7 @@
 #include "continuum/rigid.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define SEEN 1e-6     // part of a motion that a fixed direction must see
@@ -180,6 +181,126 @@ sn_status sn_fe_rigid_parts(const sn_fe_space *s) {
                          parts, at[0], at[1], at[2]);
     }
     sn_free(part);
+    return status;
+}
+
+//---- parts that hang together by a node or an edge -----------------------------------------------
+
+enum { BLOCKS = 32 }; // most blocks whose hinges are searched
+
+/// Blocks are what hangs together by faces. Each may move as a rigid body; what holds them are the
+/// supports and the nodes they share.
+typedef struct blocks {
+    int count, rank, hinge; ///< a node that two share; -1
+    int *of_cell;           ///< block of each cell of the mesh
+    double basis[6 * BLOCKS][6 * BLOCKS];
+} blocks;
+
+typedef struct side {
+    int node[3], cell; ///< nodes rising
+} side;
+
+static int compare_sides(const void *a, const void *b) {
+    const int *x = ((const side *)a)->node, *y = ((const side *)b)->node;
+    for (int k = 0; k < 3; k++)
+        if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
+    return 0;
+}
+
+static void list_sides(const sn_mesh *mesh, side *to) {
+    for (int f = 0; f < 4 * mesh->cell_count; f++, to++) {
+        const int *cell = mesh->cell + 4 * (size_t)(f / 4);
+        to->cell = f / 4;
+        for (int k = 0, n = 0; k < 4; k++) {
+            if (k == f % 4) continue;
+            int at = n++;
+            for (; at > 0 && to->node[at - 1] > cell[k]; at--) to->node[at] = to->node[at - 1];
+            to->node[at] = cell[k];
+        }
+    }
+}
+
+static sn_status find_blocks(const sn_mesh *mesh, blocks *b) {
+    size_t count = 4 * (size_t)mesh->cell_count;
+    side *sides = sn_alloc(count, sizeof *sides);
+    if (!sides) return SN_E_MEMORY;
+    list_sides(mesh, sides);
+    qsort(sides, count, sizeof *sides, compare_sides);
+    for (int n = 0; n < mesh->cell_count; n++) b->of_cell[n] = n;
+    for (size_t f = 1; f < count; f++) {
+        if (compare_sides(sides + f - 1, sides + f) != 0) continue;
+        int one = part_of(b->of_cell, sides[f - 1].cell),
+            other = part_of(b->of_cell, sides[f].cell);
+        b->of_cell[one > other ? one : other] = one > other ? other : one;
+    }
+    sn_free(sides);
+    // a parent stands before its cells: it holds the number of its block, -1 - k, when they ask
+    for (int n = 0; n < mesh->cell_count; n++) {
+        int parent = b->of_cell[n];
+        b->of_cell[n] = parent == n ? -1 - b->count++ : b->of_cell[parent];
+    }
+    for (int n = 0; n < mesh->cell_count; n++) b->of_cell[n] = -1 - b->of_cell[n];
+    return SN_OK;
+}
+
+// Adds what direction d of a node sees in one block, less what it sees in another (-1: none).
+static void add_row(const sn_fe_space *s, blocks *b, int node, int d, int block, int other) {
+    double row[6 * BLOCKS] = {0}, length;
+    int size = 6 * b->count;
+    row_of(s, node, d, row + 6 * block);
+    for (int k = 0; k < 6 && other >= 0; k++) row[6 * other + k] = -row[6 * block + k];
+    for (int pass = 0; pass < 2; pass++)
+        for (int k = 0; k < b->rank; k++) {
+            double along = 0.0;
+            for (int i = 0; i < size; i++) along += b->basis[k][i] * row[i];
+            for (int i = 0; i < size; i++) row[i] -= along * b->basis[k][i];
+        }
+    length = 0.0;
+    for (int i = 0; i < size; i++) length += row[i] * row[i];
+    length = sqrt(length);
+    if (length < SEEN) return;
+    for (int i = 0; i < size; i++) b->basis[b->rank][i] = row[i] / length;
+    b->rank++;
+}
+
+static void add_rows(const sn_fe_space *s, const sn_mesh *mesh, int *first, blocks *b) {
+    for (int a = 0; a < mesh->node_count; a++) first[a] = -1;
+    for (int n = 0; n < 4 * mesh->cell_count && b->rank < 6 * b->count; n++) {
+        int node = mesh->cell[n], block = b->of_cell[n / 4];
+        if (first[node] == block) continue;
+        for (int d = 0; d < 3; d++)
+            if (first[node] >= 0)
+                add_row(s, b, node, d, block, first[node]);
+            else if (s->fixed[node] >> d & 1)
+                add_row(s, b, node, d, block, -1);
+        if (first[node] >= 0)
+            b->hinge = node;
+        else
+            first[node] = block;
+    }
+}
+
+sn_status sn_fe_rigid_hinges(const sn_fe_space *s, const sn_mesh *mesh) {
+    sn_status status = SN_E_MEMORY;
+    blocks *b = sn_alloc(1, sizeof *b);
+    int *first = sn_alloc((size_t)mesh->node_count, sizeof *first);
+    if (!b || !first || !(b->of_cell = sn_alloc((size_t)mesh->cell_count, sizeof *b->of_cell)))
+        goto fail;
+    b->hinge = -1;
+    SN_TRY_GOTO(status, find_blocks(mesh, b));
+    if (b->count == 1 || b->count > BLOCKS) goto fail; // many: Newton has to find out
+    add_rows(s, mesh, first, b);
+    if (b->rank >= 6 * b->count - s->free_motions || b->hinge < 0) goto fail;
+    const double *at = s->rest + 3 * b->hinge;
+    status = sn_fail(SN_E_DEFINITION,
+                     "the mesh has %d parts that meet in single nodes or edges only, as at (%.4g, "
+                     "%.4g, %.4g) m, and one can turn there as on a hinge: join them by faces, or "
+                     "fix more",
+                     b->count, at[0], at[1], at[2]);
+fail:
+    if (b) sn_free(b->of_cell);
+    sn_free(b);
+    sn_free(first);
     return status;
 }
 

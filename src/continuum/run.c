@@ -27,6 +27,16 @@ static sn_status check(const sn_case *c) {
     double rho = c->continuum.rho_infinity;
     if (!(rho >= 0.0 && rho <= 1.0))
         return sn_fail(SN_E_RANGE, "continuum: rho_infinity must be from 0 to 1, found %g", rho);
+    double error = c->continuum.step_tolerance;
+    if (!(error >= 0.0 && error < 1.0))
+        return sn_fail(
+            SN_E_RANGE,
+            "continuum: step_tolerance must be from 0 (fixed steps) to below 1, found %g", error);
+    if (error > 0.0 && c->continuum.analysis != SN_ANALYSIS_DYNAMIC)
+        return sn_fail(
+            SN_E_UNSUPPORTED,
+            "continuum: step: auto and step_tolerance are for analysis: dynamic; the "
+            "others take \"steps\" and shorten them after corners and where Newton fails");
     SN_TRY(sn_case_check(c));
     int carrier = sn_case_carried_by(c);
     if (carrier >= 0 && c->continuum.analysis != SN_ANALYSIS_DYNAMIC)
@@ -104,12 +114,29 @@ static void balance_energy(sn_fe_march *m, sn_run_summary *s) {
 
 #define LONG_STEP 1e-3 // error of one step, of the largest displacement, that a note is worth
 
-static void judge_steps(const sn_fe_inertia *i, sn_run_summary *s) {
-    if (!i || s->note[0] || !(i->error > LONG_STEP * i->way)) return;
-    snprintf(s->note, sizeof s->note,
-             "steps are long for this motion: one errs by up to %.2g of the largest displacement "
-             "(rms); what is faster than some %.2g s is damped, shorten continuum: step to see it",
-             i->error / i->way, 10.0 * s->step_s);
+// How the steps of a dynamic run came about, or that they were long.
+static void judge_steps(const sn_fe_march *m, sn_run_summary *s) {
+    const sn_fe_inertia *i = m->problem->inertia;
+    double tolerance = m->c->continuum.step_tolerance;
+    if (!i || s->note[0] || s->steps == 0) return;
+    if (tolerance > 0.0) {
+        int used = snprintf(
+            s->note, sizeof s->note,
+            "steps of %.2g s to %.2g s, so that one errs by at most %.2g of the largest "
+            "displacement (rms); %d were taken back for it, %d because Newton failed",
+            s->step_s, m->longest_used, tolerance, m->inaccurate, s->cutbacks - m->inaccurate);
+        if (m->blind > 0)
+            snprintf(s->note + used, sizeof s->note - (size_t)used,
+                     "; %d of %.2g s, faster than the mesh, erred by more", m->blind,
+                     m->least_pace);
+    } else if (i->error > LONG_STEP * i->way) {
+        snprintf(
+            s->note, sizeof s->note,
+            "steps are long for this motion: one errs by up to %.2g of the largest "
+            "displacement (rms); what is faster than some %.2g s is damped, shorten continuum: "
+            "step to see it, or let step: auto choose",
+            i->error / i->way, 10.0 * s->step_s);
+    }
 }
 
 static void sum_up(sn_fe_march *m, sn_run_summary *s) {
@@ -129,7 +156,7 @@ static void sum_up(sn_fe_march *m, sn_run_summary *s) {
         snprintf(s->note, sizeof s->note,
                  "%d of %ld steps were accepted at rounding level, above the tolerance of %.3g",
                  m->rounded, s->steps, m->c->continuum.tolerance);
-    judge_steps(m->problem->inertia, s);
+    judge_steps(m, s);
     if (m->problem->materials->remembers && !s->note[0])
         snprintf(s->note, sizeof s->note,
                  "elastic_J is the energy of the last strain if it were reached at once; a relaxed "

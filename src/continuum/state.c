@@ -96,10 +96,13 @@ static void visit_counters(archive *a, sn_fe_march *m) {
     pass(a, &s->newton_iterations, sizeof s->newton_iterations);
     pass(a, &s->cutbacks, sizeof s->cutbacks);
     pass(a, &m->rounded, sizeof m->rounded);
+    pass(a, &m->inaccurate, sizeof m->inaccurate);
+    pass(a, &m->blind, sizeof m->blind);
     pass(a, &m->past_count, sizeof m->past_count);
     pass_doubles(a, m->past_at, SN_FE_PAST);
-    double *const numbers[] = {&s->step_s, &s->simulated_s, &s->external_work_J,   &m->wish,
-                               &m->limit,  &m->elapsed,     &m->problem->reference};
+    double *const numbers[] = {&s->step_s,      &s->simulated_s, &s->external_work_J,    &m->wish,
+                               &m->limit,       &m->elapsed,     &m->problem->reference, &m->pace,
+                               &m->longest_used};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++) pass_doubles(a, numbers[k], 1);
     pass(a, s->note, sizeof s->note);
 }
@@ -107,7 +110,7 @@ static void visit_counters(archive *a, sn_fe_march *m) {
 static void visit(archive *a, sn_fe_march *m, double *time, sn_status *status) {
     sn_fe_problem *p = m->problem;
     size_t dofs = (size_t)p->space->dofs;
-    agree(a, 0x326574617473u); // "state2", and the order of bytes
+    agree(a, 0x336574617473u); // "state3", and the order of bytes
     agree(a, fingerprint(m));
     agree(a, dofs);
     agree(a, p->materials->numbers);

@@ -95,12 +95,31 @@ sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
     return SN_OK;
 }
 
+// A longest step, or a tolerance that chooses the steps: what a dynamic run does unless told.
+static sn_status read_continuum_step(const sn_yaml *node, sn_continuum_def *def) {
+    const sn_yaml *step = sn_yaml_get(node, "step"),
+                  *tolerance = sn_yaml_get(node, "step_tolerance");
+    bool dynamic = def->analysis == SN_ANALYSIS_DYNAMIC;
+    const sn_yaml *word = NULL;
+    if (step) SN_TRY(read_step(step, &def->step));
+    if (step && !(def->step > 0.0)) word = step;
+    if (tolerance) word = tolerance;
+    if (word && !dynamic)
+        return sn_yaml_fail(word, SN_E_UNSUPPORTED,
+                            "steps are chosen by their error in analysis: dynamic only; the other "
+                            "analyses take \"steps\" or a longest \"step\"");
+    if (word || (dynamic && !step && !sn_yaml_get(node, "steps")))
+        def->step_tolerance = SN_STEP_TOLERANCE;
+    return tolerance ? read_tolerance(tolerance, &def->step_tolerance) : SN_OK;
+}
+
 sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
-    static const char *const keys[] = {"element",      "analysis",  "steps",           "step",
-                                       "rho_infinity", "tolerance", "memory_tolerance"};
+    static const char *const keys[] = {
+        "element",   "analysis",         "steps",         "step", "rho_infinity",
+        "tolerance", "memory_tolerance", "step_tolerance"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 7));
+    SN_TRY(sn_yaml_map(node, keys, 8));
     if ((value = sn_yaml_get(node, "element"))) {
         SN_TRY(sn_yaml_choice(value, element_names, 3, &index));
         def->element = (sn_element)index;
@@ -110,7 +129,7 @@ sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
         def->analysis = (sn_analysis)index;
     }
     if ((value = sn_yaml_get(node, "steps"))) SN_TRY(sn_yaml_int(value, 1, 1000000, &def->steps));
-    if ((value = sn_yaml_get(node, "step"))) SN_TRY(read_positive(value, "s", &def->step));
+    SN_TRY(read_continuum_step(node, def));
     if ((value = sn_yaml_get(node, "rho_infinity"))) {
         SN_TRY(sn_yaml_quantity(value, "1", &def->rho_infinity));
         if (!(def->rho_infinity >= 0.0 && def->rho_infinity <= 1.0))

@@ -7,7 +7,8 @@
 // with the physical group they belong to. Only how a line is laid out and where the group stands
 // differs: in 2.2 with every element, in 4.1 with the geometric entity of a block of elements. The
 // mesh is built from the lists: node tags, which may be sparse, become 0 … n-1 in the order of the
-// file, and nodes of no tetrahedron (midside nodes, points of the geometry) are left out.
+// file, and nodes of no tetrahedron (midside nodes, points of the geometry) are left out. Other
+// cells and faces are cut as they are read: see gmsh_element.c.
 //
 // A count in the file is believed only as far as the bytes that follow could hold it.
 #include <limits.h>
@@ -16,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/gmsh_element.h"
 #include "io/gmsh_mesh.h"
 #include "io/gmsh_scan.h"
 #include "sinew/io.h"
@@ -23,41 +25,6 @@
 #define GROUPS_MAX 4096
 #define NODE_BYTES 8    // the shortest node: "1\n0 0 0\n"
 #define ELEMENT_BYTES 4 // the shortest element of 4.1: "1 1\n"
-
-typedef enum kind { SKIPPED, TRIANGLE, TETRAHEDRON, REFUSED } kind;
-
-// Elements by Gmsh's number. What is not listed is refused.
-static const struct element_type {
-    int number;
-    kind kind;
-    int dimension;
-    int nodes; // the corners stand first
-    const char *name;
-} element_types[] = {
-    {15, SKIPPED, 0, 1, "points"},
-    {1, SKIPPED, 1, 2, "lines"},
-    {8, SKIPPED, 1, 3, "lines"},
-    {2, TRIANGLE, 2, 3, "triangles"},
-    {9, TRIANGLE, 2, 6, "triangles"},
-    {4, TETRAHEDRON, 3, 4, "tetrahedra"},
-    {11, TETRAHEDRON, 3, 10, "tetrahedra"},
-    {3, REFUSED, 2, 0, "quadrangles"},
-    {16, REFUSED, 2, 0, "quadrangles"},
-    {10, REFUSED, 2, 0, "quadrangles"},
-    {5, REFUSED, 3, 0, "hexahedra"},
-    {12, REFUSED, 3, 0, "hexahedra"},
-    {17, REFUSED, 3, 0, "hexahedra"},
-    {6, REFUSED, 3, 0, "prisms"},
-    {13, REFUSED, 3, 0, "prisms"},
-    {18, REFUSED, 3, 0, "prisms"},
-    {7, REFUSED, 3, 0, "pyramids"},
-    {14, REFUSED, 3, 0, "pyramids"},
-    {19, REFUSED, 3, 0, "pyramids"},
-    {26, REFUSED, 1, 0, "lines of third order"},
-    {21, REFUSED, 2, 0, "triangles of third order"},
-    {29, REFUSED, 3, 0, "tetrahedra of third order"},
-};
-#define ELEMENT_TYPES ((int)(sizeof element_types / sizeof *element_types))
 
 // A surface or volume of the geometry with its physical groups (4.1).
 typedef struct entity {
@@ -348,26 +315,19 @@ static int find_node(const reader *r, long long tag) {
 
 //---- elements ------------------------------------------------------------------------------------
 
-static sn_status read_type(reader *r, const struct element_type **type) {
+static sn_status read_type(reader *r, const sn_gmsh_element **type) {
     long long number;
     SN_TRY(sn_gmsh_integer(&r->scan, "the number of an element type", 1, INT_MAX, &number));
-    for (int k = 0; k < ELEMENT_TYPES; k++) {
-        if (element_types[k].number != number) continue;
-        *type = &element_types[k];
-        if ((*type)->kind != REFUSED) return SN_OK;
-        return sn_gmsh_fail(&r->scan, SN_E_UNSUPPORTED,
-                            "found %s (type %lld), expected tetrahedra of first or second order "
-                            "(types 4 and 11) and their triangles",
-                            (*type)->name, number);
-    }
+    *type = sn_gmsh_element_find(number);
+    if (*type && (*type)->kind != SN_GMSH_REFUSED) return SN_OK;
     return sn_gmsh_fail(&r->scan, SN_E_UNSUPPORTED,
-                        "found elements of type %lld, expected tetrahedra (4, 11) and triangles "
-                        "(2, 9)",
-                        number);
+                        "found %s (type %lld), expected tetrahedra, hexahedra, prisms or pyramids "
+                        "of first or second order with their triangles and quadrangles",
+                        *type ? (*type)->name : "unknown elements", number);
 }
 
-// The nodes of an element, of which the first `corners` are kept.
-static sn_status read_corners(reader *r, const struct element_type *type, int corners, int *node) {
+// The nodes of an element, of which the corners are kept.
+static sn_status read_corners(reader *r, const sn_gmsh_element *type, int *node) {
     for (int k = 0; k < type->nodes; k++) {
         long long tag;
         SN_TRY(sn_gmsh_integer(&r->scan, "the tag of a node", 1, LLONG_MAX, &tag));
@@ -376,53 +336,87 @@ static sn_status read_corners(reader *r, const struct element_type *type, int co
             return sn_gmsh_fail(&r->scan, SN_E_SYNTAX,
                                 "found node %lld, expected one of the %d that $Nodes lists", tag,
                                 r->lists.node_count);
-        if (k < corners) node[k] = place;
+        if (k < type->corners) node[k] = place;
     }
     return sn_gmsh_line_end(&r->scan, "as many nodes as the element has");
 }
 
-// What is left of an element's line: its nodes. It goes into every group of the list.
-static sn_status read_element(reader *r, const struct element_type *type, int count,
-                              const int *groups) {
-    if (type->kind == TETRAHEDRON) {
-        sn_gmsh_cell cell = {.group = groups[0]};
-        SN_TRY(read_corners(r, type, 4, cell.node));
+// Six times the volume of a tetrahedron.
+static double size_of(const reader *r, const int node[4]) {
+    double e[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            e[k][i] = r->lists.node[3 * (size_t)node[k + 1] + (size_t)i] -
+                      r->lists.node[3 * (size_t)node[0] + (size_t)i];
+    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) +
+           e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+}
+
+static sn_status add_cell(reader *r, const sn_gmsh_element *type, int group) {
+    int node[SN_GMSH_CORNERS], part[SN_GMSH_PARTS][4], positive = 0;
+    SN_TRY(read_corners(r, type, node));
+    int parts = sn_gmsh_cut_cell(type->corners, node, part);
+    for (int k = 0; k < parts; k++) positive += size_of(r, part[k]) > 0.0;
+    if (positive != 0 && positive != parts)
+        return sn_gmsh_fail(&r->scan, SN_E_MESH,
+                            "found one of the %s so twisted that %d of the %d tetrahedra it is cut "
+                            "into are inside out, expected flatter faces: remesh there",
+                            type->name, positive > parts / 2 ? parts - positive : positive, parts);
+    for (int k = 0; k < parts; k++) {
         SN_TRY(
             grow(&r->lists.cells, r->lists.cell_count, &r->cell_capacity, sizeof *r->lists.cells));
         if (r->lists.cell_count == SN_CELLS_MAX)
             return sn_gmsh_fail(&r->scan, SN_E_MESH,
                                 "found more than %d tetrahedra, expected fewer", SN_CELLS_MAX);
-        r->lists.cells[r->lists.cell_count++] = cell;
-        r->lists.groups[cell.group].count++;
-        return SN_OK;
+        sn_gmsh_cell *cell = &r->lists.cells[r->lists.cell_count++];
+        memcpy(cell->node, part[k], sizeof part[k]);
+        cell->group = group;
+        r->lists.groups[group].count++;
     }
-    sn_gmsh_face face = {0};
-    if (count) SN_TRY(read_corners(r, type, 3, face.node));
-    for (int k = 0; k < count; k++) {
-        face.group = groups[k];
+    r->lists.split_cells += parts > 1;
+    return SN_OK;
+}
+
+static sn_status add_face(reader *r, const sn_gmsh_element *type, int count, const int *groups) {
+    int node[SN_GMSH_CORNERS], part[2][3], parts = 0;
+    if (count) {
+        SN_TRY(read_corners(r, type, node));
+        parts = sn_gmsh_cut_face(type->corners, node, part);
+    }
+    for (int k = 0; k < count * parts; k++) {
         SN_TRY(
             grow(&r->lists.faces, r->lists.face_count, &r->face_capacity, sizeof *r->lists.faces));
-        r->lists.faces[r->lists.face_count++] = face;
-        r->lists.groups[face.group].count++;
+        sn_gmsh_face *face = &r->lists.faces[r->lists.face_count++];
+        memcpy(face->node, part[k % parts], sizeof part[0]);
+        face->group = groups[k / parts];
+        r->lists.groups[face->group].count++;
     }
     return SN_OK;
+}
+
+// What is left of an element's line: its nodes. It goes into every group of the list.
+static sn_status read_element(reader *r, const sn_gmsh_element *type, int count,
+                              const int *groups) {
+    return type->kind == SN_GMSH_CELL ? add_cell(r, type, groups[0])
+                                      : add_face(r, type, count, groups);
 }
 
 // tag, type, number of tags, the physical and other tags, nodes
 static sn_status read_elements_22(reader *r, int count) {
     sn_gmsh_scan *scan = &r->scan;
     for (int e = 0; e < count; e++) {
-        const struct element_type *type;
+        const sn_gmsh_element *type;
         long long tag, tags, physical = 0, other;
         SN_TRY(sn_gmsh_line(scan, "an element (fewer elements than declared)"));
         SN_TRY(sn_gmsh_integer(scan, "the tag of an element", 1, LLONG_MAX, &tag));
         SN_TRY(read_type(r, &type));
-        if (type->kind == SKIPPED) continue;
+        if (type->kind == SN_GMSH_SKIPPED) continue;
         SN_TRY(sn_gmsh_integer(scan, "the number of tags", 0, INT_MAX, &tags));
         if (tags > 0) SN_TRY(sn_gmsh_integer(scan, "a physical tag", -INT_MAX, INT_MAX, &physical));
         for (long long i = 1; i < tags; i++)
             SN_TRY(sn_gmsh_integer(scan, "a tag", INT_MIN, INT_MAX, &other));
-        int found = 0, groups = type->kind == TETRAHEDRON || physical != 0;
+        int found = 0, groups = type->kind == SN_GMSH_CELL || physical != 0;
         if (groups) SN_TRY(find_group(r, type->dimension, physical, &found));
         SN_TRY(read_element(r, type, groups, &found));
     }
@@ -461,7 +455,7 @@ static sn_status read_elements_41(reader *r, long long blocks, int declared) {
     sn_gmsh_scan *scan = &r->scan;
     int done = 0;
     for (long long b = 0; b < blocks; b++) {
-        const struct element_type *type;
+        const sn_gmsh_element *type;
         long long dimension, tag, element;
         int count = 0, group_count = 0, body = 0;
         const int *groups = NULL;
@@ -487,7 +481,7 @@ static sn_status read_elements_41(reader *r, long long blocks, int declared) {
         for (int e = 0; e < count; e++) {
             SN_TRY(sn_gmsh_line(scan, "an element (fewer elements than declared)"));
             SN_TRY(sn_gmsh_integer(scan, "the tag of an element", 1, LLONG_MAX, &element));
-            if (type->kind != SKIPPED) SN_TRY(read_element(r, type, group_count, groups));
+            if (type->kind != SN_GMSH_SKIPPED) SN_TRY(read_element(r, type, group_count, groups));
         }
         done += count;
     }
@@ -512,10 +506,11 @@ static sn_status read_elements(reader *r) {
     SN_TRY(sn_gmsh_line_end(scan, r->version == 41 ? "four numbers" : "the number of elements"));
     SN_TRY(r->version == 41 ? read_elements_41(r, blocks, count) : read_elements_22(r, count));
     if (!r->lists.cell_count)
-        return sn_gmsh_fail(scan, SN_E_MESH,
-                            "found no tetrahedra, expected some: mesh in 3D, and where physical "
-                            "groups are defined, define a Physical Volume too or save with "
-                            "-save_all");
+        return sn_gmsh_fail(
+            scan, SN_E_MESH,
+            "found no tetrahedra or other cells, expected some: mesh in 3D, and where physical "
+            "groups are defined, define a Physical Volume too or save with "
+            "-save_all");
     return sn_gmsh_leave(scan);
 }
 

@@ -69,6 +69,7 @@ static sn_status build_cells(const sn_gmsh_lists *lists, sn_mesh *mesh, const in
     mesh->region = sn_alloc((size_t)lists->cell_count, sizeof *mesh->region);
     if (!mesh->cell || !mesh->region) return SN_E_MEMORY;
     mesh->cell_count = lists->cell_count;
+    mesh->split_cells = lists->split_cells;
     for (int c = 0; c < lists->cell_count; c++) {
         const sn_gmsh_cell *cell = &lists->cells[c];
         for (int k = 0; k < 4; k++) mesh->cell[4 * (size_t)c + (size_t)k] = number[cell->node[k]];

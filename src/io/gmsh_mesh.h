@@ -23,6 +23,7 @@ typedef struct sn_gmsh_cell {
 
 typedef struct sn_gmsh_lists {
     int group_count, node_count, face_count, cell_count;
+    int split_cells; ///< hexahedra, prisms and pyramids that became tetrahedra
     sn_gmsh_group *groups;
     double *node; ///< metres                                      (node_count x 3)
     sn_gmsh_face *faces;

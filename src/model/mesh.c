@@ -76,6 +76,7 @@ sn_status sn_mesh_copy(const sn_mesh *mesh, sn_mesh **copy) {
         sn_mesh_destroy(m);
         return SN_E_MEMORY;
     }
+    m->split_cells = mesh->split_cells;
     *copy = m;
     return SN_OK;
 }

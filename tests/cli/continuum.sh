@@ -40,6 +40,24 @@ fails 2 "0 (most damping) to 1" sh -c 'sed "s/0.9/1.5/" moving.yaml >bad.yaml; "
 sed '/density/d' soft.yaml >light.yaml
 fails 2 "density" sh -c 'sed "s/soft.yaml/light.yaml/" moving.yaml >bad.yaml; "$0" run bad.yaml --engine continuum' "$SINEW"
 
+# steps by accuracy: what a dynamic run does unless told, and says
+case_of auto "element: P2P1, analysis: dynamic"
+case_of chosen "element: P2P1, analysis: dynamic, step: auto, step_tolerance: 1e-4"
+case_of loose "element: P2P1, analysis: dynamic, step_tolerance: 1e-3"
+for c in auto chosen loose; do
+    "$SINEW" run $c.yaml --engine continuum --out $c --quiet
+    grep -q '"note": "steps of .* taken back for it' $c/summary.json || die "$c does not say how it went"
+done
+cmp auto/history.csv chosen/history.csv || die "auto is not the default"
+holds "$(number steps <loose/summary.json) < 0.8 * $(number steps <auto/summary.json)"
+for c in loose moving; do
+    holds "($(number tip_uz <$c/summary.json) / $(number tip_uz <auto/summary.json) - 1)^2 < 0.03^2"
+done
+case_of wrong "step: auto"
+fails 2 "analysis: dynamic only" "$SINEW" run wrong.yaml --engine continuum
+case_of wrong "analysis: dynamic, step_tolerance: 2"
+fails 2 "less than 1" "$SINEW" run wrong.yaml --engine continuum
+
 # killed as soon as a state is there; the folder then goes on to the same bytes
 "$SINEW" run moving.yaml --engine continuum --out killed --quiet &
 running=$!
@@ -65,5 +83,11 @@ for key in '"refinement"' '"meshes"' '"tip_uz"' '"elastic_J"' '"extrapolated"' '
     grep -q "$key" refined/summary.json || die "no $key in summary.json"
 done
 grep -q "Error by refinement" refined/report.html || die "no table in the report"
+sed 's/P2/P1/' fine.yaml >first.yaml
+"$SINEW" run first.yaml --engine continuum --refine 3 --by order --json --quiet >order.json
+[ "$(grep -c '"model": "P2P1"' order.json)" = 2 ] || die "two runs of P2P1 were to follow"
+fails 2 "element: P1" "$SINEW" run fine.yaml --engine continuum --refine 2 --by order
+fails 2 "cells or order" "$SINEW" run fine.yaml --engine continuum --refine 2 --by luck
+fails 2 "give both" "$SINEW" run fine.yaml --engine continuum --by order
 fails 2 "expected 2 or 3" "$SINEW" run fine.yaml --engine continuum --refine 4
 fails 2 "engine continuum" "$SINEW" run fine.yaml --engine springs --refine 2

@@ -8,8 +8,42 @@ static const sn_element elements[] = {SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P
 
 static sn_status nothing(void *context, const sn_frame *frame) {
     (void)context;
-    assert_in_range(frame->field_count, 5, 6); // the sixth: fibres
+    assert_in_range(frame->field_count, 7, 8); // the eighth: fibres
     return SN_OK;
+}
+
+// Fields against each other in a state of one deformation F = 1 + H: F S F^T = J sigma; principal
+// stretches by the invariants of C, which Green strain has nothing to do with.
+static void check_patch_fields(const sn_mesh *mesh, const sn_fe_measure *m, const double H[3][3]) {
+    static const int sym[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    double F[3][3], C[3][3] = {{0}}, trace = 0, square = 0, scale = 0;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) F[i][j] = H[i][j] + (i == j);
+    double J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) +
+               F[0][1] * (F[1][2] * F[2][0] - F[1][0] * F[2][2]) +
+               F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++) C[i][j] += F[k][i] * F[k][j];
+    for (int i = 0; i < 3; i++) {
+        trace += C[i][i];
+        for (int j = 0; j < 3; j++) square += C[i][j] * C[i][j];
+    }
+    for (int n = 0; n < mesh->cell_count; n++) {
+        const double *l = m->stretch + 3 * n, *S = m->reference + 6 * n, *sigma = m->stress + 6 * n;
+        assert_true(l[0] >= l[1] && l[1] >= l[2]);
+        CHECK_REL(l[0] * l[0] + l[1] * l[1] + l[2] * l[2], trace, 1e-9);
+        CHECK_REL(pow(l[0], 4) + pow(l[1], 4) + pow(l[2], 4), square, 1e-9);
+        CHECK_REL(l[0] * l[1] * l[2], J, 1e-9);
+        for (int k = 0; k < 6; k++) scale = fmax(scale, fabs(sigma[k]));
+        for (int i = 0; i < 3; i++)
+            for (int j = 0; j < 3; j++) {
+                double push = 0;
+                for (int k = 0; k < 3; k++)
+                    for (int o = 0; o < 3; o++) push += F[i][k] * S[sym[k][o]] * F[j][o];
+                CHECK_ABS((push / J - sigma[sym[i][j]]) / scale, 0, 1e-9);
+            }
+    }
 }
 
 // x = (I + H) X has one strain and one stress everywhere: with the boundary moved so, the inside
@@ -67,6 +101,7 @@ static void patch(sn_element element, const sn_tissue *tissue, bool fibres) {
         CHECK_ABS(stress / scale, 0,
                   1e-9); // the bulk modulus multiplies errors of the volume by 50
     }
+    check_patch_fields(c->mesh, m, H);
     sn_fe_measure_destroy(m, c);
     sn_record_destroy(history);
     sn_free(x);
@@ -239,11 +274,11 @@ static void newton_is_quadratic(void **state) {
                 pairs++;
                 assert_true(e1 <= 10 * e0 * e0);
             }
-            if (getenv("SINEW_SHOW")) {
-                print_message("%s %s:", p->space->element.name, follower ? "pressure" : "motion");
-                for (int k = 1; k <= out.iterations; k++) print_message(" %.2e", newton.trace[k]);
-                print_message("\n");
-            }
+            // printed always: the exponent of each error doubles
+            print_message("Newton, %s, %s: relative residuals", p->space->element.name,
+                          follower ? "follower pressure" : "prescribed motion");
+            for (int k = 1; k <= out.iterations; k++) print_message(" %.1e", newton.trace[k]);
+            print_message("\n");
             assert_true(out.balance.error < 1e-11);
             assert_true(out.iterations <= 8);
             assert_true(pairs > 0);

@@ -1,24 +1,6 @@
 // Motion with inertia: bars and waves against closed forms, order in time, energy, free bodies.
 // SPDX-License-Identifier: Apache-2.0
-#include "body.h"
-#include "continuum/problem.h"
-
-static const double density = 1000; // of body_tissue()
-static const sn_element elements[] = {SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1};
-
-// A bar of 0.1 m held at its left end that can move along `axis` alone: waves of one speed.
-static sn_case *wave_bar(sn_element element, int cells, int axis, const sn_tissue *tissue) {
-    sn_case *c = body_block(0.1, 0.01, 0.01, cells, 1, 1, tissue, element);
-    bool held[3] = {true, true, true};
-    body_support(c, "left", true, true, true);
-    held[axis] = false;
-    body_support(c, "boundary", held[0], held[1], held[2]);
-    c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
-    c->continuum.tolerance = 1e-9;
-    body_probe(c, "tip", 0.1, 0.005, 0.005);
-    body_reaction(c, "wall", "left");
-    return c;
-}
+#include "waves.h"
 
 // A traction that acts suddenly on the free end: by d'Alembert the tip rises at s/(rho c), turns at
 // 2 L/c at twice the static value and is back at 4 L/c, the period of the first mode; the wall
@@ -30,7 +12,7 @@ static void sudden_pull(void **state) {
     sn_tissue t = body_neo_hookean(G, K);
     for (int k = 0; k < 6; k++) {
         int axis = k / 3; // along the bar, across it
-        double modulus = axis ? G : K + 4 * G / 3, T = 0.1 / sqrt(modulus / density);
+        double modulus = axis ? G : K + 4 * G / 3, T = 0.1 / sqrt(modulus / DENSITY);
         sn_case *c = wave_bar(elements[k % 3], k % 3 ? 20 : 40, axis, &t);
         body_pull(c, "right", axis ? 0 : 1e-6 * modulus, axis ? 1e-6 * modulus : 0, 0, NULL);
         c->until = 4 * T;
@@ -159,13 +141,13 @@ typedef struct falling {
 static sn_status add_momentum(void *context, const sn_frame *frame) {
     falling *f = context;
     memset(f->momentum, 0, sizeof f->momentum);
-    assert_int_equal(frame->field_count, 6);
-    assert_string_equal(frame->fields[5].name, "velocity");
+    assert_int_equal(frame->field_count, 8);
+    assert_string_equal(frame->fields[7].name, "velocity");
     for (int n = 0; n < f->mesh->cell_count; n++)
         for (int k = 0; k < 4; k++)
             for (int i = 0; i < 3; i++)
-                f->momentum[i] += density * sn_mesh_cell_volume(f->mesh, n) / 4 *
-                                  frame->fields[5].value[3 * f->mesh->cell[4 * n + k] + i];
+                f->momentum[i] += DENSITY * sn_mesh_cell_volume(f->mesh, n) / 4 *
+                                  frame->fields[7].value[3 * f->mesh->cell[4 * n + k] + i];
     f->momentum_time = frame->time;
     return SN_OK;
 }
@@ -185,11 +167,11 @@ static void free_fall(void **state) {
     sn_run_summary s;
     sn_record *r = body_run(c, &output, &s);
     CHECK_ABS(f.momentum_time, 0.05, 1e-15);
-    CHECK_REL(f.momentum[2], -9.81 * density * 2e-6 * 0.05, 1e-8);
+    CHECK_REL(f.momentum[2], -9.81 * DENSITY * 2e-6 * 0.05, 1e-8);
     CHECK_REL(f.momentum[0], 100 * 1e-4 * 0.05, 1e-8);
     CHECK_ABS(f.momentum[1] / f.momentum[0], 0, 1e-8);
     // a rigid fall alone holds this energy; the force stretches and shakes the body as well
-    assert_true(s.kinetic_J > 0.5 * density * 2e-6 * pow(9.81 * 0.05, 2));
+    assert_true(s.kinetic_J > 0.5 * DENSITY * 2e-6 * pow(9.81 * 0.05, 2));
     sn_record_destroy(r);
     sn_case_destroy(c);
 }
@@ -252,13 +234,52 @@ static void long_steps(void **state) {
     for (int fine = 0; fine < 2; fine++) {
         sn_case *c = wave_bar(SN_ELEMENT_P1, 10, 0, &t);
         body_pull(c, "right", 1e-6 * modulus, 0, 0, NULL);
-        c->until = c->output_every = 0.4 / sqrt(modulus / density);
+        c->until = c->output_every = 0.4 / sqrt(modulus / DENSITY);
         c->continuum.steps = fine ? 320 : 8;
         sn_run_summary s;
         sn_record *r = body_run(c, NULL, &s);
         if (getenv("SINEW_SHOW")) print_message("%ld steps: %s\n", s.steps, s.note);
         assert_true((strstr(s.note, "steps are long") == NULL) == fine);
         sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+}
+
+//---- steps by accuracy --------------------------------------------------------------------------
+
+// The error of the whole falls with the tolerance of a step: a step's own error is of third order
+// in its length, that of the run of second, so that an eighth of the tolerance halves the steps and
+// quarters the error, whatever changes of length the control makes on the way. Loads have corners.
+// The reference's own error adds 0.07 to the order, as in order().
+static void steps_by_accuracy(void **state) {
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        double course[3][2 * OUTPUTS], error[2], steps[2];
+        sn_case *c = shaken(kind);
+        for (int n = 0; n < 3; n++) {
+            sn_run_summary s;
+            c->continuum.steps = n == 2 ? 1600 : 5;
+            c->continuum.step_tolerance = n == 2 ? 0 : n == 1 ? 3.2e-6 : 2.56e-5;
+            sn_record *r = body_run(c, NULL, &s);
+            for (int k = 0; k < OUTPUTS; k++) {
+                course[n][k] = sn_record_values(r, "tip_ux")[k + 1] / 0.004;
+                course[n][OUTPUTS + k] = sn_record_values(r, "wall_fx")[k + 1] / 0.3;
+            }
+            if (n < 2) steps[n] = (double)s.steps;
+            assert_true((strstr(s.note, "steps of") && strstr(s.note, "taken back")) == (n < 2));
+            if (getenv("SINEW_SHOW"))
+                print_message("case %d: %ld steps, %d cut back; %s\n", kind, s.steps, s.cutbacks,
+                              s.note);
+            sn_record_destroy(r);
+        }
+        for (int n = 0; n < 2; n++) error[n] = distance(course[n], course[2], 2 * OUTPUTS);
+        double rate = log(error[0] / error[1]) / log(steps[1] / steps[0]);
+        if (getenv("SINEW_SHOW"))
+            print_message("case %d: errors %.3g %.3g, order %.2f in the steps\n", kind, error[0],
+                          error[1], rate);
+        assert_true(rate > 1.7 && rate < 2.4);
+        // 100 to 200 of the largest single error add up, most of them cancel
+        assert_true(error[0] < 100 * 2.56e-5 && error[1] < 100 * 3.2e-6);
         sn_case_destroy(c);
     }
 }
@@ -272,6 +293,12 @@ static void refusals(void **state) {
     c->continuum.rho_infinity = 1.2;
     CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_RANGE, "rho_infinity");
     c->continuum.rho_infinity = 0.8;
+    c->continuum.step_tolerance = 1;
+    CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_RANGE, "step_tolerance");
+    c->continuum.step_tolerance = 1e-4;
+    c->continuum.analysis = SN_ANALYSIS_QUASI_STATIC;
+    CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_UNSUPPORTED, "analysis: dynamic");
+    c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
     c->tissue->density = (double)NAN;
     CHECK_FAILS(sn_continuum_run(c, NULL, &s, r), SN_E_DEFINITION, "density");
     sn_record_destroy(r);
@@ -280,9 +307,9 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sudden_pull),   cmocka_unit_test(order),
-        cmocka_unit_test(free_fall),     cmocka_unit_test(energy),
-        cmocka_unit_test(comes_to_rest), cmocka_unit_test(long_steps),
-        cmocka_unit_test(refusals)};
+        cmocka_unit_test(sudden_pull),       cmocka_unit_test(order),
+        cmocka_unit_test(free_fall),         cmocka_unit_test(energy),
+        cmocka_unit_test(comes_to_rest),     cmocka_unit_test(long_steps),
+        cmocka_unit_test(steps_by_accuracy), cmocka_unit_test(refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

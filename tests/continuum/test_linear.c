@@ -4,8 +4,21 @@
 
 typedef struct fields {
     const sn_mesh *mesh;
+    bool linear;
     double stress[6], strain[6], pressure, energy; ///< means over the body of the last frame
 } fields;
+
+// The two stresses are one, and the stretches hold the change of volume: differences of states of
+// 1e-5 strain, whose error is of second order in it.
+static void check_small(const sn_frame *frame, int n) {
+    const double *S = frame->fields[5].value + 6 * n, *sigma = frame->fields[3].value + 6 * n,
+                 *l = frame->fields[6].value + 3 * n, *e = frame->fields[2].value + 6 * n;
+    double size = 1e-12, strain = fabs(l[0] - 1) + fabs(l[2] - 1);
+    for (int k = 0; k < 6; k++) size = fmax(size, fabs(sigma[k]));
+    for (int k = 0; k < 6; k++) CHECK_ABS((S[k] - sigma[k]) / size, 0, 1e-4);
+    assert_true(l[0] >= l[1] && l[1] >= l[2]);
+    CHECK_ABS(l[0] + l[1] + l[2] - 3, e[0] + e[1] + e[2], 1e-4 * strain + 1e-12);
+}
 
 static sn_status keep(void *context, const sn_frame *frame) {
     fields *f = context;
@@ -21,6 +34,7 @@ static sn_status keep(void *context, const sn_frame *frame) {
         }
         f->energy += v * frame->fields[4].value[n];
         volume += v;
+        if (f->linear) check_small(frame, n);
     }
     for (int k = 0; k < 6; k++) {
         f->stress[k] /= volume;
@@ -59,7 +73,7 @@ static void limit(void **state) {
             for (int linear = 0; linear < 2; linear++) {
                 sn_case *c = loaded((sn_element)e, half ? 0.01 : 0.02);
                 if (linear) c->continuum.analysis = SN_ANALYSIS_LINEAR;
-                fields f = {.mesh = c->mesh};
+                fields f = {.mesh = c->mesh, .linear = linear};
                 sn_output output = {.context = &f, .frame = keep};
                 sn_run_summary s;
                 sn_record *r = body_run(c, &output, &s);

@@ -27,7 +27,8 @@ static sn_status keep_state(void *context, const void *bytes, size_t count) {
     return SN_OK;
 }
 
-// 0: quasi-static with memory and friction, 1: dynamic with memory, 2: dynamic incompressible
+// 0: quasi-static with memory and friction, 1: dynamic with memory and steps
+// by accuracy, 2: dynamic incompressible
 static sn_case *course(int kind) {
     const double prony[] = {0.4, 0.05};
     sn_tissue t = body_neo_hookean(3000, kind == 2 ? (double)INFINITY : 2e4);
@@ -50,6 +51,7 @@ static sn_case *course(int kind) {
     c->until = kind ? 0.05 : 1;
     c->output_every = c->until / 5;
     c->continuum.steps = 10;
+    if (kind == 1) c->continuum.step_tolerance = 1e-3;
     body_probe(c, "tip", 0.02, 0.01, 0.01);
     body_reaction(c, "base", "bottom");
     return c;

@@ -58,11 +58,12 @@ typedef struct seen {
 
 static sn_status look(void *context, const sn_frame *frame) {
     seen *s = context;
-    static const char *const name[] = {"displacement", "pressure", "green_strain", "cauchy_stress",
-                                       "energy_density"};
-    static const int components[] = {3, 1, 6, 6, 1};
-    assert_int_equal(frame->field_count, 5);
-    for (int k = 0; k < 5; k++) {
+    static const char *const name[] = {"displacement",       "pressure",       "green_strain",
+                                       "cauchy_stress",      "energy_density", "second_pk_stress",
+                                       "principal_stretches"};
+    static const int components[] = {3, 1, 6, 6, 1, 6, 3};
+    assert_int_equal(frame->field_count, 7);
+    for (int k = 0; k < 7; k++) {
         assert_string_equal(frame->fields[k].name, name[k]);
         assert_int_equal(frame->fields[k].components, components[k]);
         assert_int_equal(frame->fields[k].place, k < 2 ? SN_ON_NODES : SN_ON_CELLS);
@@ -77,6 +78,12 @@ static sn_status look(void *context, const sn_frame *frame) {
         CHECK_REL(frame->fields[3].value[6 * n], sigma[0], 1e-6);
         for (int k = 1; k < 6; k++)
             CHECK_ABS(frame->fields[3].value[6 * n + k] / sigma[0], 0, 1e-6);
+        // sigma = l1/(l2 l3) S11 along the first axis; Green strain from the same stretches
+        const double *l = frame->fields[6].value + 3 * n, *S = frame->fields[5].value + 6 * n;
+        CHECK_REL(S[0], sigma[0] * l[1] * l[2] / l[0], 1e-6);
+        for (int k = 1; k < 6; k++) CHECK_ABS(S[k] / S[0], 0, 1e-6);
+        for (int k = 0; k < 3; k++)
+            CHECK_REL(l[k], sqrt(1 + 2 * frame->fields[2].value[6 * n + k]), 1e-6);
     }
     return SN_OK;
 }
