@@ -69,6 +69,10 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->share_start = net->edge_start;
     pass->share = net->edge_cell;
     pass->edge = net->cell_edge;
+    if (call->bare && region->fibred) {
+        pass->value = region->bare.value;
+        pass->value_f = region->bare_f;
+    }
     set_memory(region, call, SN_PART_DEVIATORIC, region->cell_store, factors, &pass->memory);
     if (net->rung != SN_RUNG_CENTRAL) set_parts(region, call, factors, pass);
 }

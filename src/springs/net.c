@@ -111,10 +111,14 @@ static sn_status set_tissue(const sn_case *c, sn_net *net, sn_net_region *region
                            "example %g Pa (1000 times the shear modulus)",
                            t->name, 1000.0 * moduli.shear);
     }
+    sn_tissue apart[2];
+    region->fibred = sn_tissue_split_fibres(t, apart) > 1;
+    region->bare = apart[0];
     region->splits = sn_tissue_split(t, region->split);
     if (net->rung == SN_RUNG_CENTRAL) SN_TRY(check_central(c, net, region));
     for (int k = 0; k < SN_VALUES_MAX; k++) {
         region->value_f[k] = (float)t->value[k];
+        region->bare_f[k] = (float)region->bare.value[k];
         for (int n = 0; n < region->splits; n++)
             region->split_value_f[n][k] = (float)region->split[n].value[k];
     }

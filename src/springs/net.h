@@ -19,6 +19,9 @@ typedef struct sn_net_region {
     int splits;         ///< of the distortional stress: 1; 2: the matrix, then the fibres
     sn_tissue split[2]; ///< central: the matrix is of springs, fibres are of cells
     float split_value_f[2][SN_VALUES_MAX];
+    bool fibred;    ///< fibres have an energy of their own, which resists tension only
+    sn_tissue bare; ///< where fibred: without them
+    float bare_f[SN_VALUES_MAX];
     double density;
     double shear;      ///< instantaneous, small strain
     double bulk;       ///< of the volume term of this net (central: what springs do not bring)
@@ -438,7 +441,7 @@ typedef struct sn_force_call {
     const void *history;       ///< TRIAL
     const sn_parts *parts;     ///< Nullable
     bool upright;              ///< some cells are crushed (SN_UPRIGHT)
-    bool bare;                 ///< a central net without its fibres
+    bool bare;                 ///< without fibres, where these have an energy of their own
     sn_scratch *out;
     sn_team *team; ///< Nullable: alone
 } sn_force_call;
@@ -553,7 +556,7 @@ typedef struct sn_frequency_call {
     sn_team *team;          ///< Nullable: alone
     const sn_parts *parts;  ///< Nullable
     bool upright;           ///< as in sn_force_call
-    bool taut;              ///< at rest: fibres of a central net resist both ways
+    bool taut;              ///< at rest: fibres resist both ways
 } sn_frequency_call;
 double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 /// The same in parts: begin with the forces at u in the scratch; while it is true that another
@@ -571,10 +574,12 @@ double sn_net_stable_step(const sn_net *net, double omega2);
 /// few steps. Measured without any damping, fibres 15 times as stiff as the matrix: at 0.9 of the
 /// limit motions grow tenfold in 20,000 steps, at 0.77 twofold, at 0.63 they stay.
 #define SN_STEP_SAFETY_FIBRES 0.63
-/// Whether cells of a net have fibres beside springs. These carry tension only, so that a body that
+/// Whether a net has fibres apart from the matrix. These carry tension only, so that a body that
 /// stands still does not show how stiff it may be in the next moment.
 static inline bool sn_net_has_fibres(const sn_net *net) {
-    return net->rung == SN_RUNG_CENTRAL && net->cell_tiles.count > 0;
+    for (int r = 0; r < net->region_count; r++)
+        if (net->region[r].fibred) return true;
+    return false;
 }
 static inline double sn_net_step_safety(const sn_net *net) {
     return sn_net_has_fibres(net) ? SN_STEP_SAFETY_FIBRES : SN_STEP_SAFETY;
