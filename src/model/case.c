@@ -45,6 +45,7 @@ void sn_case_destroy(sn_case *c) {
     for (int i = 0; i < c->tool_count; i++) sn_tool_release(&c->tool[i]);
     sn_free(c->tool);
     sn_free(c->probe);
+    sn_spring_set_destroy(c->springs_given);
     sn_free(c);
 }
 
@@ -83,6 +84,13 @@ static sn_status check_same_parts(const sn_mesh *from, const sn_mesh *to) {
     return SN_OK;
 }
 
+static bool same_mesh(const sn_mesh *a, const sn_mesh *b) {
+    if (a->node_count != b->node_count || a->cell_count != b->cell_count) return false;
+    const size_t nodes = (size_t)a->node_count, cells = (size_t)a->cell_count;
+    return memcmp(a->node, b->node, nodes * 3 * sizeof *a->node) == 0 &&
+           memcmp(a->cell, b->cell, cells * 4 * sizeof *a->cell) == 0;
+}
+
 sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     *copy = NULL;
     SN_TRY(check_same_parts(c->mesh, mesh));
@@ -94,6 +102,7 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     to->load_count = to->tool_count = 0;
     to->load = NULL;
     to->tool = NULL;
+    to->springs_given = NULL;
     to->tissue = copy_array(c->tissue, c->mesh->region_count, sizeof *c->tissue);
     to->support = copy_array(c->support, c->support_count, sizeof *c->support);
     to->probe = copy_array(c->probe, c->probe_count, sizeof *c->probe);
@@ -102,6 +111,8 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
         goto fail;
     }
     SN_TRY_GOTO(status, copy_loads_and_tools(c, to));
+    if (same_mesh(c->mesh, mesh))
+        SN_TRY_GOTO(status, sn_spring_set_copy(c->springs_given, &to->springs_given));
     to->has_shape = c->has_shape && mesh->node_count == c->mesh->node_count &&
                     mesh->cell_count == c->mesh->cell_count;
     to->mesh = mesh;
