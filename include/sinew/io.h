@@ -39,6 +39,16 @@ SN_API sn_status sn_tissue_read(const char *path, sn_tissue *tissue);
 SN_API sn_status sn_tissue_write(const char *path, const sn_tissue *tissue, const char *comment);
 /// Reads a case with its tissues and mesh (paths relative to the case file) and checks it.
 SN_API sn_status sn_case_read(const char *path, sn_case **c);
+/// Writes springs given one by one: remarks "exponent of REGION" and, where it is given, "bulk
+/// modulus of REGION", then the table from, to (nodes from 0), region, length [m], stiffness [N/m].
+/// @param comment  Nullable; stands at its head
+/// @return SN_OK, SN_E_FILE, SN_E_MEMORY.
+SN_API sn_status sn_springs_write(const char *path, const sn_mesh *mesh, const sn_spring_set *set,
+                                  const char *comment);
+/// Reads what sn_springs_write() writes. Lengths must be those of the mesh to 1e-6.
+/// @return SN_OK, SN_E_FILE, SN_E_SYNTAX, SN_E_UNIT, SN_E_NAME (region), SN_E_DEFINITION (of
+/// another mesh), SN_E_RANGE, SN_E_KEY (no exponent), SN_E_DATA (no springs), SN_E_MEMORY.
+SN_API sn_status sn_springs_read(const char *path, const sn_mesh *mesh, sn_spring_set **set);
 /// Reads a Gmsh mesh, ASCII 2.2 or 4.1: tetrahedra, physical volumes as regions, physical surfaces
 /// as surfaces. `scale` brings its coordinates to metres. Calls sn_mesh_finish(). Groups without a
 /// name are "volume_3" and "surface_7", cells of no physical volume the region "body"; tetrahedra

@@ -273,6 +273,30 @@ typedef struct sn_fibres {
                        ///<                                                      (count x 6)
 } sn_fibres;
 
+//---- springs given one by one --------------------------------------------------------------------
+
+/// Springs of a central net in place of those that follow from the tissue's moduli, as
+/// sn_calibrate() finds them. Arrays come from sn_alloc(); sn_spring_set_destroy() frees them.
+typedef struct sn_spring_set {
+    int count, region_count;
+    int *end;          ///< nodes of the mesh, both of the region; no edge is needed (count x 2)
+    int *region;       ///< of the mesh                            (count)
+    double *stiffness; ///< N/m at small strain, 0 or more         (count)
+    double *exponent;  ///< B of the law of the springs            (region_count)
+    double *bulk;      ///< of the nodal volume energy, Pa; NAN: what the springs, stretched evenly,
+                       ///< lack of the tissue's bulk modulus      (region_count)
+} sn_spring_set;
+
+/// A set of zeros with room for so many, `bulk` NAN. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_spring_set_create(int count, int region_count, sn_spring_set **set);
+SN_API void sn_spring_set_destroy(sn_spring_set *set); // NULL is allowed
+/// An equal set; NULL of NULL. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_spring_set_copy(const sn_spring_set *set, sn_spring_set **copy);
+/// Checks that a set fits a mesh; messages count springs from 0.
+/// @return SN_OK, SN_E_DEFINITION (nodes, regions), SN_E_RANGE (stiffness, exponent, bulk),
+/// SN_E_MEMORY.
+SN_API sn_status sn_spring_set_check(const sn_spring_set *set, const sn_mesh *mesh);
+
 //---- case ----------------------------------------------------------------------------------------
 
 /// Everything a solver needs to know. Owns all it points to.
@@ -296,6 +320,7 @@ typedef struct sn_case {
     double output_every; ///< seconds
     sn_springs_def springs;
     sn_continuum_def continuum;
+    sn_spring_set *springs_given; ///< Nullable, owned: of the rung central; others do not look
 } sn_case;
 
 /// An empty case with default settings.
@@ -305,7 +330,8 @@ SN_API void sn_case_destroy(sn_case *c); // NULL is allowed
 /// unless it fails. Everything else is copied, so both may be destroyed; has_shape stays where the
 /// mesh has as many nodes and cells as before, else it is cleared. Cuts by a region take the cells
 /// that the region has on the new mesh. Listed fibres go from the cell that holds the middle of the
-/// new one (or is nearest to it).
+/// new one (or is nearest to it). Springs given one by one stay where the mesh has the same nodes
+/// and cells, else they are left away.
 /// @return SN_OK, SN_E_DEFINITION (regions or surfaces differ; cuts of numbered cells on a mesh
 /// with another number of cells), SN_E_MEMORY.
 SN_API sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy);

@@ -34,16 +34,37 @@ SN_API const sn_exponentials *sn_net_memory(const sn_net *net);
 /// case's own.
 SN_API double sn_net_step(const sn_net *net);
 
+/// Whether the springs of a central net of the case are those of a lattice, of which the elastic
+/// tensor is isotropic by class constants: built-in blocks of the patterns mirrored and bcc.
+SN_API bool sn_springs_lattice(const sn_case *c);
 /// The springs of a central net: the nodes of the mesh at their ends (spring_count x 2) and their
 /// stiffness at small strain, N/m (spring_count). Both are Nullable. A region has springs of its
 /// own: an edge between two regions stands twice.
 SN_API void sn_net_springs(const sn_net *net, int *ends, double *stiffness);
+/// The same with what else their force depends on, as a case takes it in `springs_given`; of other
+/// rungs a set without springs. @return SN_OK, SN_E_MEMORY.
+SN_API sn_status sn_net_spring_set(const sn_net *net, sn_spring_set **set);
 /// Gives every spring of a central net a stiffness of its own, N/m, in the order of
 /// sn_net_springs(): what a calibration found, or springs taken out (0). The volume term stays what
 /// it is. The explicit step is found anew; no state of the net may exist.
 /// @return SN_OK; else the net is as it was: SN_E_UNSUPPORTED (no springs), SN_E_RANGE (negative,
 /// not finite), SN_E_MEMORY.
 SN_API sn_status sn_net_set_spring_stiffness(sn_net *net, const double *stiffness);
+
+//---- virtual tests -------------------------------------------------------------------------------
+
+#define SN_RESPONSES 13
+/// "stretch x" y z, "shear xy" yz zx, "pressure", "bend x" y z, "twist x" y z.
+SN_API const char *sn_net_response_name(int test);
+/// How stiff a net is at small strain, without supports and loads, against the homogeneous body: a
+/// stress that is even or linear in space, as in a long beam that is bent or twisted, acts by its
+/// tractions on a body of any shape, whose answer is known. Of any rung.
+/// @param held   the surface moves as that of the body instead, and only the inside is free
+/// @param tests  one bit a test
+/// @param error  stiffness over the body's, less 1; NAN where it was not asked for or not found
+/// @return SN_OK, SN_E_UNSUPPORTED (several regions, fibres, incompressible), SN_E_MEMORY.
+SN_API sn_status sn_net_responses(const sn_net *net, bool held, unsigned tests,
+                                  double error[SN_RESPONSES]);
 
 SN_API sn_status sn_state_create(const sn_net *net, sn_state **state);
 SN_API void sn_state_destroy(sn_state *state); // NULL is allowed

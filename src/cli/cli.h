@@ -18,8 +18,8 @@ typedef struct cli_command {
     int (*run)(const struct cli_command *command, int argc, char **argv);
 } cli_command;
 
-extern const cli_command cli_analyze, cli_fit, cli_test, cli_run, cli_compare, cli_bench, cli_lists,
-    cli_convert;
+extern const cli_command cli_analyze, cli_fit, cli_test, cli_run, cli_calibrate, cli_compare,
+    cli_bench, cli_lists, cli_convert;
 
 int cli_command_count(void);
 const cli_command *cli_command_at(int index);

@@ -331,6 +331,31 @@ static const key_row comparison[] = {
     MODEL("models[]"),
 };
 
+static const key_row calibration[] = {
+    {"case", "", "name of the case"},
+    {"rule", "", "full, affine, uniform or lloyd"},
+    {"nodes", "", "of the mesh"},
+    {"cells", "", "tetrahedra"},
+    {"springs", "", "with a stiffness above 0"},
+    {"springs_beyond_edges", "", "of them, those that are no edges of the mesh"},
+    {"regions", "", "one object a region of the mesh"},
+    {"regions[].name", "", "of the region"},
+    {"regions[].force_residual", "1",
+     "part of the nodal forces of even strains that no springs give; null where not fitted"},
+    {"regions[].tensor_residual", "1",
+     "the same of linearly growing strains, which hold the elastic tensor"},
+    {"regions[].scale", "1", "common factor from the held tests"},
+    {"regions[].strain", "1", "up to which the exponent was fitted"},
+    {"regions[].exponent", "1", "of the law of the springs"},
+    {"regions[].factor", "1", "on all stiffnesses, fitted with the exponent"},
+    {"regions[].errors", "", "of the virtual tests"},
+    {"regions[].errors.*", "1",
+     "held and free: stiffness at small strain over the continuum's, less 1; finite: rms of the "
+     "stress over its largest"},
+    {"regions[].worst", "", "the test with the largest error"},
+    {"regions[].worst.*", "", "of each kind"},
+};
+
 static const key_row bench_springs[] = {
     {"results", "", "one object a net"},
     {"results[].model", "", "rung"},
@@ -438,6 +463,7 @@ static const key_table tables[] = {
     TABLE("fit", "`sinew fit`, fit.json", fit),
     TABLE("test", "`sinew test`", test),
     TABLE("run", "`sinew run`, summary.json", runs),
+    TABLE("calibrate", "`sinew calibrate`, calibration.json", calibration),
     TABLE("compare", "`sinew compare`, compare.json", comparison),
     TABLE("bench-springs", "`sinew bench springs`", bench_springs),
     TABLE("bench-continuum", "`sinew bench continuum`", bench_continuum),

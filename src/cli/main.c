@@ -6,7 +6,8 @@
 #include "cli/cli.h"
 
 static const cli_command *const commands[] = {
-    &cli_analyze, &cli_fit, &cli_test, &cli_run, &cli_compare, &cli_bench, &cli_convert, &cli_lists,
+    &cli_analyze, &cli_fit,   &cli_test,    &cli_run,   &cli_calibrate,
+    &cli_compare, &cli_bench, &cli_convert, &cli_lists,
 };
 
 #define COMMANDS ((int)(sizeof commands / sizeof commands[0]))
@@ -23,7 +24,7 @@ const cli_command *cli_command_at(int index) {
 static void print_help(void) {
     printf("sinew %s - soft tissue from the testing machine to the simulator\n\n", sn_version());
     for (int k = 0; k < COMMANDS; k++)
-        printf("  sinew %-8s %s\n", commands[k]->name, commands[k]->text);
+        printf("  sinew %-9s %s\n", commands[k]->name, commands[k]->text);
     printf(
         "\nEvery command explains itself with --help, prints one JSON object with --json, and is\n"
         "silent but for errors with --quiet. Exit code: 0 done, 1 the work failed, 2 bad input.\n");

@@ -64,12 +64,12 @@ static sn_status read_damping(const sn_yaml *node, sn_springs_def *def) {
 }
 
 sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
-    static const char *const keys[] = {"model",   "volume",  "integrator",
-                                       "scheme",  "step",    "precision",
-                                       "threads", "damping", "memory_tolerance"};
+    static const char *const keys[] = {
+        "model",     "volume",  "integrator", "scheme",           "step",
+        "precision", "threads", "damping",    "memory_tolerance", "constants"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 9));
+    SN_TRY(sn_yaml_map(node, keys, 10));
     if ((value = sn_yaml_get(node, "model"))) {
         SN_TRY(sn_yaml_choice(value, rung_names, 3, &index));
         def->rung = (sn_rung)index;
@@ -111,6 +111,23 @@ static sn_status read_continuum_step(const sn_yaml *node, sn_continuum_def *def)
     if (word || (dynamic && !step && !sn_yaml_get(node, "steps")))
         def->step_tolerance = SN_STEP_TOLERANCE;
     return tolerance ? read_tolerance(tolerance, &def->step_tolerance) : SN_OK;
+}
+
+// `constants` of `springs`, which need the mesh
+static sn_status read_constants(const sn_yaml *springs, sn_case *c) {
+    const sn_yaml *node = springs ? sn_yaml_get(springs, "constants") : NULL;
+    const char *name;
+    char *path;
+    if (!node) return SN_OK;
+    if (c->springs.rung != SN_RUNG_CENTRAL)
+        return sn_yaml_fail(node, SN_E_DEFINITION,
+                            "only the springs of model central have constants of their own: give "
+                            "\"model: central\" too, or leave them away");
+    SN_TRY(sn_yaml_text(node, "the path of a table that sinew calibrate wrote", &name));
+    SN_TRY(sn_case_join_path(node, name, &path));
+    sn_status status = sn_springs_read(path, c->mesh, &c->springs_given);
+    sn_free(path);
+    return sn_yaml_within(node, status);
 }
 
 sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
@@ -184,6 +201,7 @@ static sn_status read_case(const sn_yaml *root, sn_case *c) {
     SN_TRY(sn_case_read_mesh(node, c));
     SN_TRY(sn_case_read_tissues(sn_yaml_get(root, "tissue"), c));
     if ((node = sn_yaml_get(root, "fibres"))) SN_TRY(sn_case_read_fibres(node, c));
+    SN_TRY(read_constants(sn_yaml_get(root, "springs"), c));
     if ((node = sn_yaml_get(root, "supports"))) SN_TRY(sn_case_read_supports(node, c));
     if ((node = sn_yaml_get(root, "loads"))) SN_TRY(sn_case_read_loads(node, c));
     if ((node = sn_yaml_get(root, "tools"))) SN_TRY(sn_case_read_tools(node, c));

@@ -48,6 +48,7 @@ void sn_case_destroy(sn_case *c) {
     for (int i = 0; i < c->cut_count; i++) sn_free(c->cut[i].cell);
     sn_free(c->cut);
     sn_free(c->fibres.listed);
+    sn_spring_set_destroy(c->springs_given);
     sn_free(c);
 }
 
@@ -105,6 +106,13 @@ static sn_status check_same_parts(const sn_mesh *from, const sn_mesh *to) {
     return SN_OK;
 }
 
+static bool same_mesh(const sn_mesh *a, const sn_mesh *b) {
+    if (a->node_count != b->node_count || a->cell_count != b->cell_count) return false;
+    const size_t nodes = (size_t)a->node_count, cells = (size_t)a->cell_count;
+    return memcmp(a->node, b->node, nodes * 3 * sizeof *a->node) == 0 &&
+           memcmp(a->cell, b->cell, cells * 4 * sizeof *a->cell) == 0;
+}
+
 sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     *copy = NULL;
     SN_TRY(check_same_parts(c->mesh, mesh));
@@ -118,6 +126,7 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     to->tool = NULL;
     to->cut = NULL;
     to->fibres.listed = NULL;
+    to->springs_given = NULL;
     to->tissue = copy_array(c->tissue, c->mesh->region_count, sizeof *c->tissue);
     to->support = copy_array(c->support, c->support_count, sizeof *c->support);
     to->probe = copy_array(c->probe, c->probe_count, sizeof *c->probe);
@@ -128,6 +137,8 @@ sn_status sn_case_on_mesh(const sn_case *c, sn_mesh *mesh, sn_case **copy) {
     SN_TRY_GOTO(status, copy_loads_and_tools(c, to));
     SN_TRY_GOTO(status, copy_cuts(c, mesh, to));
     SN_TRY_GOTO(status, sn_fibres_on_mesh(&c->fibres, c->mesh, mesh, &to->fibres));
+    if (same_mesh(c->mesh, mesh))
+        SN_TRY_GOTO(status, sn_spring_set_copy(c->springs_given, &to->springs_given));
     to->has_shape = c->has_shape && mesh->node_count == c->mesh->node_count &&
                     mesh->cell_count == c->mesh->cell_count;
     to->mesh = mesh;

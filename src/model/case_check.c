@@ -418,6 +418,7 @@ sn_status sn_case_check(const sn_case *c) {
     SN_TRY(check_contradictions(c));
     SN_TRY(check_names(c));
     SN_TRY(check_probes(c));
+    if (c->springs_given) SN_TRY(sn_spring_set_check(c->springs_given, c->mesh));
     SN_TRY(check_tools(c));
     return check_cuts(c);
 }

@@ -76,6 +76,16 @@ static uint64_t mix_fibres(uint64_t hash, const sn_case *c) {
     return f->listed ? sn_hash(hash, f->listed, 6 * (size_t)f->count * sizeof *f->listed) : hash;
 }
 
+static uint64_t mix_springs(uint64_t hash, const sn_spring_set *s) {
+    if (!s) return hash;
+    const size_t count = (size_t)s->count, regions = (size_t)s->region_count;
+    hash = sn_hash(hash, s->end, 2 * count * sizeof *s->end);
+    hash = sn_hash(hash, s->region, count * sizeof *s->region);
+    hash = sn_hash(hash, s->stiffness, count * sizeof *s->stiffness);
+    hash = sn_hash(hash, s->exponent, regions * sizeof *s->exponent);
+    return sn_hash(hash, s->bulk, regions * sizeof *s->bulk);
+}
+
 uint64_t sn_case_fingerprint(const sn_case *c) {
     const int counts[] = {c->support_count, c->load_count, c->tool_count, c->probe_count};
     uint64_t hash = mix_fibres(sn_hash(SN_HASH_START, counts, sizeof counts), c);
@@ -90,5 +100,5 @@ uint64_t sn_case_fingerprint(const sn_case *c) {
     for (int k = 0; k < c->load_count; k++) hash = mix_load(hash, &c->load[k]);
     for (int k = 0; k < c->tool_count; k++) hash = mix_tool(hash, &c->tool[k]);
     for (int k = 0; k < c->probe_count; k++) hash = mix_probe(hash, &c->probe[k]);
-    return hash;
+    return mix_springs(hash, c->springs_given);
 }

@@ -135,8 +135,9 @@ static sn_status list_weights(const sn_mesh *mesh, const sn_net *net, sn_cutting
         for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
             const int s = net->spring_share[q];
             const int *end = net->spring_end + s / SN_BLOCK * 2 * SN_BLOCK + s % SN_BLOCK;
+            // as springs/edges.c puts springs together
             k->share[q] = net->by_turn ? turn_of(net, mesh->cell + 4 * e, end[0], end[SN_BLOCK])
-                                       : volume[slot];
+                                       : cbrt(volume[slot]);
             k->spring_whole[s] += k->share[q];
         }
     }
@@ -232,6 +233,10 @@ static sn_status list_cuts(const sn_case *c, sn_cutting *k) {
 //---- whole ---------------------------------------------------------------------------------------
 
 sn_status sn_cutting_create(const sn_case *c, sn_net *net) {
+    if (c->springs_given && net->rung == SN_RUNG_CENTRAL)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "springs: cells cannot be cut from springs that are given one by one, as "
+                       "none of these belongs to a cell; leave `constants` or the cuts away");
     sn_cutting *k = net->cutting = sn_alloc(1, sizeof *k); // a net that fails is destroyed whole
     if (!k) return SN_E_MEMORY;
     k->penalty = sn_case_penalty(c);

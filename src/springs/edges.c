@@ -3,11 +3,12 @@
 //
 // Every region has springs of its own; an edge between two regions carries one of each. On the
 // built-in blocks the stiffness is the class constant of sn_lattice_constants() times the part of a
-// full turn that the cells around the edge fill. Elsewhere it follows from the volume of the cells,
-//     k_e = 15 mu v_e / L_e^2,  v_e = sum over the cells around e of V / 6,
-// whose sum of v_e is the volume of the body: were edges spread evenly over all directions, the
-// shear modulus would be mu. How far a
-// given mesh is from that is not checked here.
+// full turn that the cells around the edge fill. Elsewhere it is
+//     k_e = s mu sum over the cells around e of (6 sqrt2 V)^(1/3),
+// the edges of regular tetrahedra of the cells' volumes, as Lloyd, Szekely and Harders have it
+// (IEEE Trans. Vis. Comput. Graph. 13 (2007) 1081), with a scale s common to the region from one
+// virtual test (springs/relaxed.c). How far that is from the continuum on a given mesh is not
+// checked here.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,23 +74,23 @@ static double class_constant(const constants *c, const double D[3]) {
     return c->face[along[0] == 0 && along[1] == 2 ? 2 : along[0]]; // xy yz zx
 }
 
-// gathers the parts of one edge; returns how many there are
-static int gather(const sn_net *net, const sn_net_region *region, const constants *k,
-                  const sn_edge_part *part, int left, sn_spring *s) {
+// gathers the parts of one edge, of stiffness over the shear modulus without the scale; returns how
+// many there are
+static int gather(const sn_net *net, const constants *k, const sn_edge_part *part, int left,
+                  sn_spring *s) {
     int n = 0;
-    double turn = 0;
+    double turn = 0, lengths = 0;
     *s = (sn_spring){.end = {part->low, part->high}};
     for (; n < left && part[n].low == part->low && part[n].high == part->high; n++) {
         s->volume += part[n].volume;
         turn += part[n].turn;
+        lengths += cbrt(6.0 * sqrt(2.0) * part[n].volume);
     }
     for (int d = 0; d < 3; d++) {
         s->edge[d] = net->node_position[3 * s->end[1] + d] - net->node_position[3 * s->end[0] + d];
         s->length2 += s->edge[d] * s->edge[d];
     }
-    double shear = region->shear * region->stiffening;
-    s->stiffness = k->classes ? shear * turn * class_constant(k, s->edge)
-                              : 15.0 * shear * (s->volume / 6.0) / s->length2;
+    s->stiffness = k->classes ? turn * class_constant(k, s->edge) : lengths;
     return n;
 }
 
@@ -141,14 +142,23 @@ static sn_status region_springs(const sn_mesh *mesh, sn_net *net, int r, const c
         goto fail;
     }
     for (int i = 0; i < count;) {
-        i += gather(net, region, k, part + i, count - i, &spring[springs]);
+        i += gather(net, k, part + i, count - i, &spring[springs]);
         springs += spring[springs].stiffness > 0;
     }
+    double scale = 1.0;
+    if (!k->classes) SN_TRY_GOTO(status, sn_net_relaxed_scale(mesh, r, spring, springs, &scale));
+    scale *= region->shear * region->stiffening;
+    for (int i = 0; i < springs; i++) spring[i].stiffness *= scale;
     status = sn_net_place_springs(net, region, spring, springs);
 fail:
     sn_free(part);
     sn_free(spring);
     return status;
+}
+
+bool sn_springs_lattice(const sn_case *c) {
+    double axis[3], face[3], body;
+    return c->has_shape && sn_lattice_constants(&c->shape, axis, face, &body);
 }
 
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net) {
@@ -157,6 +167,8 @@ sn_status sn_net_build_springs(const sn_case *c, sn_net *net) {
         k.classes = net->by_turn = true;
         for (int d = 0; d < 3; d++) k.h[d] = c->shape.size[d] / c->shape.cells[d];
     }
-    for (int r = 0; r < net->region_count; r++) SN_TRY(region_springs(c->mesh, net, r, &k));
+    for (int r = 0; r < net->region_count; r++)
+        SN_TRY(c->springs_given ? sn_net_given_springs(c, net, r)
+                                : region_springs(c->mesh, net, r, &k));
     return SN_OK;
 }

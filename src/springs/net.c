@@ -74,6 +74,12 @@ static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *reg
                        "hgo",
                        t->name, t->law->name);
     region->splits = sn_tissue_split_fibres(t, region->split);
+    if (c->springs_given) {
+        const int r = (int)(region - net->region);
+        region->exponent = c->springs_given->exponent[r];
+        region->bulk = c->springs.volume ? sn_net_given_bulk(c, r, region->bulk) : 0.0;
+        return SN_OK;
+    }
     SN_TRY(sn_spring_fit(&region->split[0], &region->exponent, &region->stiffening));
     // springs bring lambda = mu, a bulk modulus of 5/3 mu
     double own = 5.0 / 3.0 * region->shear * region->stiffening;
@@ -327,7 +333,8 @@ static sn_status build(const sn_case *c, sn_net *net) {
     if (net->rung == SN_RUNG_SMOOTHED) SN_TRY(sn_net_build_edges(c, net));
     SN_TRY(sn_net_build_turns(net));
     SN_TRY(sn_net_build_tiles(c, net));
-    SN_TRY(list_shares(net));
+    SN_TRY(c->springs_given && net->rung == SN_RUNG_CENTRAL ? sn_net_share_given(net)
+                                                            : list_shares(net));
     SN_TRY(set_masses(c, net));
     SN_TRY(sn_net_build_drive(c, net));
     SN_TRY(set_inverse_masses(net));
@@ -362,11 +369,16 @@ sn_status sn_net_create(const sn_case *c, sn_net **net) {
     if (!n) return SN_E_MEMORY;
     sn_case ordered = *c;
     ordered.mesh = NULL;
+    ordered.springs_given = NULL;
     n->node_name = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_name);
     sn_status status =
         n->node_name ? sn_net_order_nodes(c->mesh, &ordered.mesh, n->node_name) : SN_E_MEMORY;
+    if (status == SN_OK && c->springs_given)
+        status = sn_net_order_springs(c->springs_given, n->node_name, c->mesh->node_count,
+                                      &ordered.springs_given);
     if (status == SN_OK) status = build(&ordered, n);
     sn_mesh_destroy(ordered.mesh);
+    sn_spring_set_destroy(ordered.springs_given);
     n->node_place = sn_alloc((size_t)c->mesh->node_count, sizeof *n->node_place);
     if (!n->node_place) status = SN_E_MEMORY;
     for (int i = 0; i < n->nodes && status == SN_OK; i++) n->node_place[n->node_name[i]] = i;

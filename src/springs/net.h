@@ -334,8 +334,17 @@ struct sn_state {
 
 /// Cells into blocks, volume points, node lists (springs too where the rung has them).
 sn_status sn_net_build_cells(const sn_case *c, sn_net *net);
-/// Edges into springs: `stiffness` class constants or the volume rule.
+/// Edges into springs: class constants, or those of cells with a common scale.
 sn_status sn_net_build_springs(const sn_case *c, sn_net *net);
+/// Springs given one by one (springs/given.c): a set whose nodes stand in the order of the net.
+sn_status sn_net_order_springs(const sn_spring_set *set, const int *name, int nodes,
+                               sn_spring_set **ordered);
+/// Bulk modulus of the volume term beside given springs, of a tissue with the bulk modulus `bulk`.
+double sn_net_given_bulk(const sn_case *c, int region, double bulk);
+/// Springs of one region out of c->springs_given.
+sn_status sn_net_given_springs(const sn_case *c, sn_net *net, int region);
+/// Which cells share the energy and stress of given springs, and their volume.
+sn_status sn_net_share_given(sn_net *net);
 /// Edges with the cells around them, of the smoothed rung.
 sn_status sn_net_build_edges(const sn_case *c, sn_net *net);
 void sn_net_destroy_edges(sn_net *net);
@@ -377,6 +386,10 @@ sn_status sn_net_build_drive(const sn_case *c, sn_net *net);
 /// Stiffness per unit shear modulus of an edge that is wholly present, by class of the built-in
 /// blocks. @return false where the block has no such constants.
 bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face[3], double *body);
+/// Factor on the springs of a region, of which stiffnesses are over the shear modulus, that brings
+/// the net to it.
+sn_status sn_net_relaxed_scale(const sn_mesh *mesh, int region, const sn_spring *spring, int count,
+                               double *scale);
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
 

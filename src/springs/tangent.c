@@ -18,13 +18,29 @@ static int compare_int(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+// pairs of the ends of springs: those that were given need not share a cell
+static void add_springs(const sn_net *net, sn_sparsity *p, int *fill) {
+    for (int s = 0; s < net->spring_blocks * SN_BLOCK; s++) {
+        const int *end = net->spring_end + s / SN_BLOCK * 2 * SN_BLOCK + s % SN_BLOCK;
+        for (int e = 0; e < 2; e++) {
+            const int row = end[e * SN_BLOCK], column = end[(1 - e) * SN_BLOCK];
+            if (fill)
+                p->column[fill[row]++] = column;
+            else
+                p->start[row + 1]++;
+        }
+    }
+}
+
 // rows[4 a cell slot] are the rows that a cell touches, at [(block * 4 + corner) * SN_BLOCK + lane]
 static sn_status create_pattern(const sn_net *net, int rows, const int *row_of, sn_sparsity *p) {
     const double *volume = net->data[SN_DOUBLE].volume;
     p->rows = rows;
     p->start = sn_alloc((size_t)rows + 1, sizeof *p->start);
     int *fill = sn_alloc((size_t)rows + 1, sizeof *fill);
-    p->column = sn_alloc((size_t)net->cells * 16, sizeof *p->column);
+    const bool springs = net->springs > 0 && row_of == net->cell_node;
+    const size_t pairs = springs ? (size_t)net->spring_blocks * SN_BLOCK * 2 : 0;
+    p->column = sn_alloc((size_t)net->cells * 16 + pairs, sizeof *p->column);
     if (!p->start || !fill || !p->column) {
         sn_free(fill);
         return SN_E_MEMORY;
@@ -42,6 +58,7 @@ static sn_status create_pattern(const sn_net *net, int rows, const int *row_of, 
                         p->column[fill[row]++] = net->cell_node[at + b * SN_BLOCK];
                 }
         }
+        if (springs) add_springs(net, p, pass == 0 ? NULL : fill);
         if (pass == 0)
             for (int i = 0; i < rows; i++) p->start[i + 1] += p->start[i];
         memcpy(fill, p->start, ((size_t)rows + 1) * sizeof *fill);

@@ -19,6 +19,6 @@ fails 2 '--ramp' "$SINEW" test x.yaml --protocol tensile --ramp "3 kPa"
 fails 2 'x.yaml' "$SINEW" compare x.yaml
 fails 2 'unknown benchmark' "$SINEW" bench strings
 "$SINEW" --help | grep -q 'sinew compare' || die "help lists the commands"
-for command in analyze fit test run compare bench convert list; do
+for command in analyze fit test run calibrate compare bench convert list; do
     "$SINEW" $command --help | grep -q 'Example' || die "$command --help has an example"
 done
