@@ -17,6 +17,9 @@ check: ## installs what is missing, then all tests: style, includes, warnings, u
 verify: all ## long verification runs
 	@scripts/verify.sh build/sinew
 
+study: all ## runs the study of docs/theory/study.md, or goes on with it
+	@scripts/study.sh build/sinew
+
 figures: all ## figures of the manual, from the command's own output
 	@scripts/figures.sh build/sinew
 
@@ -36,5 +39,5 @@ clean:
 help:
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/'
 
-.PHONY: all demo check verify figures fuzz manual install clean help
+.PHONY: all demo check verify study figures fuzz manual install clean help
 $(shell mkdir -p build)

@@ -1,5 +1,8 @@
 // What speed costs: springs against the continuum on the same case.
 // SPDX-License-Identifier: Apache-2.0
+//
+// A reference is run once for a case; models are then run on meshes of any size and held against it
+// at the same material points: the nodes and cells of the reference's mesh.
 #pragma once
 
 #include "sinew/model.h"
@@ -8,34 +11,107 @@
 extern "C" {
 #endif
 
-#define SN_COMPARE_MODELS_MAX 8
+#define SN_COMPARE_MODELS_MAX 16
+#define SN_LIVE_BINS 56 ///< eight a decade, from 1 us to 10 s
 
-/// One model of a comparison; errors relative to the reference's maximum over nodes and times.
+/// Errors against the reference. Lengths, forces and stresses are over the reference's largest,
+/// over all times; NAN where the case has none.
+typedef struct sn_comparison_errors {
+    double displacement_rms; ///< over points (by volume) and output times
+    double displacement_max;
+    double response_rms;   ///< of what answers: the force on what is moved, the motion of what is
+                           ///< pushed; rms over output times, worst of the loads and tools
+    double reaction_rms;   ///< the same of the force columns of the history (probes, tools)
+    double stress_rms;     ///< Cauchy stress, over cells (by volume) and output times
+    double energy;         ///< W + U of the instantaneous law at the end
+    double relaxation_max; ///< of what answers, times the one factor that brings it nearest to the
+                           ///< reference: what is left when the elastic error is taken out; largest
+                           ///< over output times. NAN where no tissue has a memory
+} sn_comparison_errors;
+
+/// Frames of 1 ms of the explicit engine in single precision, at its stable step, as a simulator
+/// runs them: what a model costs live, whatever integrator the comparison itself used.
+typedef struct sn_live {
+    double step_s;           ///< stable step at rest; NAN where the model is not for live use
+    double real_time_factor; ///< of the median frame: other work on the machine does not count
+    double frame_p50_s, frame_p99_s, frame_max_s; ///< wall time
+    int frames;
+    int bin[SN_LIVE_BINS]; ///< frames of a wall time from 10^(k/8) us to 10^((k + 1)/8) us
+} sn_live;
+
+/// One model of a comparison.
 typedef struct sn_comparison_model {
     char name[SN_NAME_MAX];
     bool done; ///< false: summary.reason says why it could not run to the end
     sn_run_summary summary;
-    sn_record *history; ///< owned
-    double displacement_rms, displacement_max;
-    double reaction_rms;  ///< worst of the reaction probes and tools; NAN where there is none
-    double stress_rms;    ///< Cauchy stress, volume-weighted over cells
-    double energy;        ///< stored elastic energy at the end
-    double *displacement; ///< at the last common time, owned  (nodes x 3)
-    double *error;        ///< displacement error there, m, owned (nodes)
+    sn_comparison_errors error;
+    sn_live live;
+    double calibration_s;     ///< time that finding the springs' constants took; 0 where none
+    double peak_memory_bytes; ///< of the run above what was there before; 0: not known
+    sn_record *history;       ///< owned
+    sn_record *energy;        ///< owned; rows only of springs
+    sn_record *response;  ///< owned; time, then for each load that moves or pushes and each tool
+                          ///< that moves what is prescribed and what answers
+                          ///< (NAME_displacement [m], NAME_force [N] in either order)
+    int points;           ///< nodes of the reference's mesh
+    double *displacement; ///< there, at the last common time, owned  (points x 3)
+    double *distance;     ///< to the reference there, m, owned       (points)
 } sn_comparison_model;
 
+/// The continuum that models are held against. Release it also where its run did not end.
+typedef struct sn_reference {
+    sn_mesh *mesh;              ///< its nodes and cells are the material points, owned
+    sn_comparison_model model;  ///< P2P1; its errors are its own estimated ones
+    char text[SN_TEXT_MAX * 2]; ///< how it was converged and its error estimated
+    int frames;                 ///< 0 where it did not run to its end
+    double *time;               ///< owned                               (frames)
+    double *displacement;       ///< m, owned             (frames x nodes x 3)
+    double *stress;             ///< Cauchy stress, Pa, owned (frames x cells x 6)
+} sn_reference;
+
+/// The case on a mesh of its own shape with `factor` times the cells along each direction;
+/// shapes from files are refined by sn_mesh_refine().
+/// @return SN_OK, SN_E_RANGE (factor; a mesh from a file takes 1, 2, 4, …), what building says.
+SN_API sn_status sn_compare_mesh(const sn_case *c, int factor, sn_case **on_mesh);
+
+/// Runs P2P1 on the case's mesh. Its own error is estimated by P2P1 on a mesh of half the cells
+/// along each edge (built-in shapes where that is possible, or `coarser`) or of twice: the
+/// difference over 2^2 - 1, order 2 being what a solution with corners reaches.
+/// @param coarser  Nullable: the case on a mesh of cells of about twice the size, whose nodes are
+///                 nodes of the case's mesh
+/// @return SN_OK also where the run did not end (model.done false); else what refuses the case.
+SN_API sn_status sn_reference_create(const sn_case *c, const sn_case *coarser,
+                                     const sn_output *output, sn_reference *reference);
+SN_API void sn_reference_release(sn_reference *reference);
+
+//---- models --------------------------------------------------------------------------------------
+
+/// The models there are: 0 … count - 1.
+SN_API int sn_compare_model_count(void);
+SN_API const char *sn_compare_model_name(int model); ///< "central+volume", …
+SN_API const char *sn_compare_model_text(int model); ///< what it is, one line
+/// Whether a model belongs to the comparison of a case unless it is asked for by name; else `why`
+/// says in one line why not.
+SN_API bool sn_compare_model_fits(const sn_case *c, int model, char why[SN_TEXT_MAX]);
+/// Runs a model of a case (on a mesh of its own) and holds it against the reference.
+/// @return SN_OK also where the model refuses the case or stops early (out->done false, reason);
+/// SN_E_MEMORY, SN_E_STOPPED, SN_E_DEFINITION (the reference did not run to its end).
+SN_API sn_status sn_compare_model(const sn_reference *reference, const sn_case *c, int model,
+                                  const sn_output *output, sn_comparison_model *out);
+SN_API void sn_comparison_model_release(sn_comparison_model *model);
+
+//---- all at once ---------------------------------------------------------------------------------
+
 typedef struct sn_comparison {
-    sn_comparison_model reference;        ///< P2P1; its errors are its own estimated ones
-    char reference_text[SN_TEXT_MAX * 2]; ///< how it was converged and its error estimated
+    sn_reference reference;
     int model_count;
     sn_comparison_model model[SN_COMPARE_MODELS_MAX];
 } sn_comparison;
 
-/// Runs `central`, `coupled` and `smoothed`, each + volume, and P1 (what the mesh alone costs)
-/// against P2P1 on the same mesh. The reference's own error is estimated by P2P1 on a coarser mesh
-/// (built-in shapes) or by P2P1 on the refined mesh (others): the difference over 2^2 - 1, order 2
-/// being what a solution with corners reaches.
-SN_API sn_status sn_compare(const sn_case *c, const sn_output *output, sn_comparison *comparison);
+/// The reference and models, all on the case's own mesh.
+/// @param models  Nullable: those that fit                                 (count)
+SN_API sn_status sn_compare(const sn_case *c, int count, const int *models, const sn_output *output,
+                            sn_comparison *comparison);
 SN_API void sn_comparison_destroy(sn_comparison *comparison);
 
 //---- calibration ---------------------------------------------------------------------------------

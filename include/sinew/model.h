@@ -55,8 +55,10 @@ typedef struct sn_shape_def {
     double length;                     ///< cylinder and tube, m, along z from 0
     double inner[2], outer[2];         ///< ellipsoid: half axes of its walls, short and long, m
     double base;                       ///< ellipsoid: z of the cut, m
-    int cells[3]; ///< block: along x y z; cylinder and tube: radial, around, along; ellipsoid:
-                  ///< through, around, along
+    int cells[3];      ///< block: along x y z; cylinder and tube: radial, around, along; ellipsoid:
+                       ///< through, around, along
+    double ratio;      ///< block: longest over shortest cell along each edge; 0 or 1: even
+    double towards[3]; ///< block with a ratio: point of the block around which cells are short, m
 } sn_shape_def;
 
 /// Most tetrahedra a mesh may have (32-bit indices, and memory).

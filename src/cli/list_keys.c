@@ -309,26 +309,63 @@ static const key_row runs[] = {
 };
 
 #define MODEL(prefix)                                                                              \
-    {prefix ".name", "", "rung or element"}, {prefix ".done", "", "it ran to its end"},            \
-        {prefix ".reason", "", "why not"},                                                         \
+    {prefix ".name", "", "rung or element"},                                                       \
+        {prefix ".mesh", "", "factor on the cells of the case along each edge"},                   \
+        {prefix ".done", "", "it ran to its end"}, {prefix ".reason", "", "why not"},              \
         {prefix ".displacement_rms", "1", "root mean square error of displacements"},              \
         {prefix ".displacement_max", "1", "largest error of displacements"},                       \
+        {prefix ".response_rms", "1",                                                              \
+         "of the force on what is moved, the motion of what is pushed"},                           \
         {prefix ".reaction_rms", "1", "root mean square error of forces"},                         \
         {prefix ".stress_rms", "1", "root mean square error of stresses"},                         \
         {prefix ".energy", "1", "error of the elastic energy"},                                    \
+        {prefix ".relaxation_max", "1",                                                            \
+         "of the response without its elastic error; null: no memory"},                            \
         {prefix ".wall_s", "s", "time it took"},                                                   \
         {prefix ".real_time_factor", "1", "simulated over wall"},                                  \
-        {prefix ".nodes", "", "of its mesh"}, {prefix ".cells", "", "tetrahedra"}, {               \
+        {prefix ".live", "", "frames of 1 ms of the explicit engine; null for elements"},          \
+        {prefix ".live.step_s", "s", "stable step"},                                               \
+        {prefix ".live.real_time_factor", "1", "of the median frame"},                             \
+        {prefix ".live.frame_p50_s", "s", "median wall time of a frame"},                          \
+        {prefix ".live.frame_p99_s", "s", "99 % of the frames took less"},                         \
+        {prefix ".live.frame_max_s", "s", "the longest frame"},                                    \
+        {prefix ".calibration_s", "s", "time that finding the springs' constants took"},           \
+        {prefix ".peak_memory_bytes", "byte", "of the run"},                                       \
+        {prefix ".nodes", "", "of its mesh, with midsides"}, {prefix ".cells", "", "tetrahedra"},  \
+        {prefix ".springs", "", "of a central net"}, {                                             \
         prefix ".memory_terms", "", "exponentials that stand for the memory"                       \
     }
 
-static const key_row comparison[] = {
-    {"case", "", "name of the case"},
-    {"reference", "", "the converged model; its errors are its own estimated ones"},
-    MODEL("reference"),
-    {"reference.text", "", "how it was converged"},
-    {"models", "", "one object a model; errors over the reference's largest value"},
-    MODEL("models[]"),
+#define COMPARISON(prefix)                                                                         \
+    {prefix "case", "", "name of the case"}, {prefix "file", "", "where it was read"},             \
+        {prefix "reference", "", "the converged model; its errors are its own estimated ones"},    \
+        MODEL(prefix "reference"), {prefix "reference.text", "", "how it was converged"},          \
+        {prefix "models", "", "one object a model and mesh; errors over the reference's largest"}, \
+        MODEL(prefix "models[]"), {prefix "left_out", "", "models that --models would run"},       \
+        {prefix "left_out[].name", "", "of the model"}, {prefix "left_out[].reason", "", "why"}, { \
+        prefix "words[]", "", "which model to use for which error; what is missing"                \
+    }
+
+static const key_row comparison[] = {COMPARISON("")};
+
+static const key_row study[] = {
+    {"cases", "", "one object a case, as compare.json"},
+    COMPARISON("cases[]."),
+    {"summary", "", "one object a model and mesh, over all cases"},
+    {"summary[].name", "", "of the model"},
+    {"summary[].mesh", "", "factor on the cells of the cases along each edge"},
+    {"summary[].nodes", "", "most of any case"},
+    {"summary[].cases", "", "that ran to their end"},
+    {"summary[].missing", "", "that did not"},
+    {"summary[].median", "1", "error: the larger of displacement_rms and response_rms"},
+    {"summary[].worst", "1", "the largest of these errors"},
+    {"summary[].worst_case", "", "where it was found"},
+    {"summary[].displacement_rms", "1", "worst"},
+    {"summary[].response_rms", "1", "worst"},
+    {"summary[].relaxation_max", "1", "worst; null where no case has a memory"},
+    {"summary[].wall_s", "s", "of all cases"},
+    {"summary[].live_real_time_factor", "1", "of the slowest case"},
+    {"words[]", "", "which model to use for which error; what is missing"},
 };
 
 static const key_row calibration[] = {
@@ -464,7 +501,8 @@ static const key_table tables[] = {
     TABLE("test", "`sinew test`", test),
     TABLE("run", "`sinew run`, summary.json", runs),
     TABLE("calibrate", "`sinew calibrate`, calibration.json", calibration),
-    TABLE("compare", "`sinew compare`, compare.json", comparison),
+    TABLE("compare", "`sinew compare` of one case, compare.json", comparison),
+    TABLE("study", "`sinew compare` of several cases, study.json", study),
     TABLE("bench-springs", "`sinew bench springs`", bench_springs),
     TABLE("bench-continuum", "`sinew bench continuum`", bench_continuum),
     TABLE("bench-haptic", "`sinew bench springs --haptic`", bench_haptic),

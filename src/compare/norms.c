@@ -5,10 +5,10 @@
 #include <math.h>
 #include <string.h>
 
-static const double *field_values(const sn_frame *frame, const char *name) {
+const double *sn_frame_field(const sn_frame *frame, const char *name) {
     for (int k = 0; k < frame->field_count; k++)
         if (strcmp(frame->fields[k].name, name) == 0) return frame->fields[k].value;
-    SN_ASSERT(false); // every engine hands out displacement and cauchy_stress
+    SN_ASSERT(false);
     return NULL;
 }
 
@@ -32,8 +32,15 @@ sn_status sn_capture_frame(void *context, const sn_frame *frame) {
     if (c->frames == c->capacity) SN_TRY(grow(c));
     size_t u = (size_t)c->nodes * 3, s = (size_t)c->cells * 6, i = (size_t)c->frames;
     c->time[i] = frame->time;
-    memcpy(c->displacement + i * u, field_values(frame, "displacement"), u * sizeof(double));
-    memcpy(c->stress + i * s, field_values(frame, "cauchy_stress"), s * sizeof(double));
+    const double *displacement = sn_frame_field(frame, "displacement");
+    const double *stress = sn_frame_field(frame, "cauchy_stress");
+    if (c->sampler) {
+        sn_sample_nodes(c->sampler, displacement, c->displacement + i * u);
+        sn_sample_cells(c->sampler, stress, c->stress + i * s);
+    } else {
+        memcpy(c->displacement + i * u, displacement, u * sizeof(double));
+        memcpy(c->stress + i * s, stress, s * sizeof(double));
+    }
     c->frames++;
     return SN_OK;
 }
@@ -129,21 +136,40 @@ double sn_stress_error(const sn_capture *a, const sn_capture *b, const double *w
     return sqrt(sum / frames);
 }
 
+static bool is_force(const sn_record *r, int column) {
+    size_t length = strlen(r->series[column].name);
+    return column + 2 < r->series_count && length >= 3 &&
+           strcmp(r->series[column].name + length - 3, "_fx") == 0;
+}
+
+static void force_at(const sn_record *r, int column, int row, double f[3]) {
+    for (int j = 0; j < 3; j++) f[j] = r->series[column + j].value[row];
+}
+
+static double largest_force(const sn_record *r, int column, int rows) {
+    double largest = 0, f[3];
+    for (int i = 0; i < rows; i++) {
+        force_at(r, column, i, f);
+        largest = fmax(largest, norm3(f));
+    }
+    return largest;
+}
+
 double sn_reaction_error(const sn_record *a, const sn_record *b) {
     int rows = a->rows < b->rows ? a->rows : b->rows;
-    double worst = NAN;
-    for (int k = 0; k + 2 < b->series_count; k++) {
-        size_t length = strlen(b->series[k].name);
-        if (length < 3 || strcmp(b->series[k].name + length - 3, "_fx") != 0) continue;
-        double sum = 0, scale = 0;
+    double worst = (double)NAN, most = 0;
+    for (int k = 0; k < b->series_count; k++)
+        if (is_force(b, k)) most = fmax(most, largest_force(b, k, rows));
+    for (int k = 0; k < b->series_count; k++) {
+        if (!is_force(b, k)) continue;
+        double sum = 0, scale = largest_force(b, k, rows);
+        if (!(scale > 1e-6 * most)) continue;
         for (int i = 0; i < rows; i++) {
             double d[3], f[3];
-            for (int j = 0; j < 3; j++) {
-                f[j] = b->series[k + j].value[i];
-                d[j] = a->series[k + j].value[i] - f[j];
-            }
+            force_at(b, k, i, f);
+            force_at(a, k, i, d);
+            for (int j = 0; j < 3; j++) d[j] -= f[j];
             sum += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            scale = fmax(scale, norm3(f));
         }
         double error = sqrt(sum / rows) / scale;
         if (isnan(worst) || error > worst) worst = error;

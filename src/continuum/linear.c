@@ -6,6 +6,7 @@
 #include <string.h>
 
 #define PROBED_STRAIN 1e-5
+#define SOLVED 1e-11 // of the residual
 
 //---- what belongs to a linear displacement -------------------------------------------------------
 
@@ -128,7 +129,7 @@ static sn_status emit(sn_fe_march *m, double s) {
 //---- solutions ----------------------------------------------------------------------------------
 
 // Puts the solution at the level that the problem has begun into m->x.
-static sn_status solve(sn_fe_march *m, bool factored) {
+static sn_status solve(sn_fe_march *m) {
     sn_fe_problem *p = m->problem;
     sn_fe_newton *n = &m->newton;
     const int *row = p->pattern->row;
@@ -145,8 +146,8 @@ static sn_status solve(sn_fe_march *m, bool factored) {
     sn_fe_problem_stiffness(p, m->guess, m->x);
     for (int d = 0; d < dofs; d++)
         if (row[d] >= 0) n->right[row[d]] = p->external[d] - p->lifted[d];
-    if (!factored) SN_TRY(sn_fe_solver_factor(p->solver, &good));
-    if (good) SN_TRY(sn_fe_solver_solve(p->solver, n->right, n->solution));
+    // factors of large systems are rough: the solver iterates with them, and keeps them
+    SN_TRY(sn_fe_solver_reduce(p->solver, SOLVED, n->right, n->solution, &good));
     for (int k = 0; k < p->pattern->rows && good; k++) good = isfinite(n->solution[k]);
     if (!good)
         return sn_fail(SN_E_SOLVER,
@@ -167,7 +168,7 @@ sn_status sn_fe_linear_go(sn_fe_march *m) {
         m->past[0] = m->x;
         m->x = swap;
         sn_fe_problem_begin(m->problem, (sn_fe_level){s->stop[k].time, 1.0, 0.0});
-        SN_TRY(solve(m, k > 0));
+        SN_TRY(solve(m));
         double small = small_factor(m);
         react(m, small);
         if (k > 0) SN_TRY(sn_fe_march_note(m, sn_clock() - clock, length));

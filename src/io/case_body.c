@@ -47,11 +47,25 @@ static sn_status read_cells(const sn_yaml *map, const char *what, int cells[3]) 
     return SN_OK;
 }
 
+// {towards: [x, y, z], ratio: 4}
+static sn_status read_grade(const sn_yaml *map, sn_shape_def *def) {
+    static const char *const keys[] = {"towards", "ratio"};
+    const sn_yaml *node;
+    SN_TRY(sn_yaml_map(map, keys, 2));
+    SN_TRY(sn_yaml_need(map, "towards", &node));
+    SN_TRY(sn_yaml_quantities(node, "m", 3, def->towards));
+    SN_TRY(sn_yaml_need(map, "ratio", &node));
+    SN_TRY(sn_yaml_quantity(node, "1", &def->ratio));
+    if (def->ratio >= 1.0 && def->ratio <= 100.0) return SN_OK;
+    return sn_yaml_expected(node, SN_E_RANGE, "longest over shortest cell, 1 to 100");
+}
+
 static sn_status read_block(const sn_yaml *map, sn_shape_def *def) {
-    static const char *const keys[] = {"size", "cells", "pattern"};
-    const sn_yaml *size;
+    static const char *const keys[] = {"size", "cells", "pattern", "grade"};
+    const sn_yaml *size, *grade;
     def->shape = SN_SHAPE_BLOCK;
-    SN_TRY(sn_yaml_map(map, keys, 3));
+    SN_TRY(sn_yaml_map(map, keys, 4));
+    if ((grade = sn_yaml_get(map, "grade"))) SN_TRY(read_grade(grade, def));
     SN_TRY(sn_yaml_need(map, "size", &size));
     SN_TRY(sn_yaml_quantities(size, "m", 3, def->size));
     for (const sn_yaml *item = size->first; item; item = item->next)

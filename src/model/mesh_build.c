@@ -108,9 +108,47 @@ static void place_centres(const sn_lattice *l, double *node) {
 // The position of lattice node (i, j, k).
 typedef void place_node(const sn_shape_def *def, int i, int j, int k, double *x);
 
+// Grading: along an edge of length L the length of a cell grows as exp(g |s - s0|) with the share s
+// of the cells, away from the point p that s0 is at; g gives the far end `ratio` times the shortest
+// cell. So x - p = +-(h/g) (exp(g |s - s0|) - 1), and the two sides of p fix s0:
+//     p (exp(g (1 - s0)) - 1) = (L - p) (exp(g s0) - 1),   g = ln(ratio) / max(s0, 1 - s0).
+// It is the same curve for any number of cells: a mesh of twice the cells has all the old nodes.
+typedef struct grading {
+    double growth, share, scale; // g, s0, h/g
+} grading;
+
+static grading find_grading(double length, double point, double ratio) {
+    double low = 0, high = 1;
+    for (int turn = 0; turn < 60; turn++) {
+        double s0 = 0.5 * (low + high), g = log(ratio) / fmax(s0, 1 - s0);
+        if ((length - point) * expm1(g * s0) > point * expm1(g * (1 - s0)))
+            high = s0;
+        else
+            low = s0;
+    }
+    double s0 = point <= 0 ? 0 : point >= length ? 1 : 0.5 * (low + high);
+    double g = log(ratio) / fmax(s0, 1 - s0);
+    return (grading){g, s0, length / (expm1(g * s0) + expm1(g * (1 - s0)))};
+}
+
+static double graded(const sn_shape_def *def, int d, int at) {
+    double length = def->size[d], share = (double)at / def->cells[d];
+    if (at == 0) return 0;
+    if (at == def->cells[d]) return length;
+    grading g = find_grading(length, def->towards[d], def->ratio);
+    double far = share - g.share;
+    return def->towards[d] + copysign(g.scale * expm1(g.growth * fabs(far)), far);
+}
+
+static bool is_graded(const sn_shape_def *def) {
+    return def->ratio > 0 && def->ratio != 1;
+}
+
 static void place_block(const sn_shape_def *def, int i, int j, int k, double *x) {
     int at[3] = {i, j, k};
-    for (int d = 0; d < 3; d++) x[d] = def->size[d] * ((double)at[d] / def->cells[d]);
+    for (int d = 0; d < 3; d++)
+        x[d] =
+            is_graded(def) ? graded(def, d, at[d]) : def->size[d] * ((double)at[d] / def->cells[d]);
 }
 
 static void place_tube(const sn_shape_def *def, int i, int j, int k, double *x) {
@@ -157,6 +195,13 @@ static sn_status build_block(const sn_shape_def *def, sn_mesh **mesh) {
         SN_TRY(check_length(what, def->size[d]));
     }
     SN_TRY(check_cells(def->cells, axis_name, 1));
+    if (def->ratio != 0 && !(def->ratio >= 1 && def->ratio <= 100))
+        return sn_fail(SN_E_RANGE, "grading ratio %g: 1 (even) to 100 expected", def->ratio);
+    for (int d = 0; d < 3 && is_graded(def); d++)
+        if (!(def->towards[d] >= 0 && def->towards[d] <= def->size[d]))
+            return sn_fail(SN_E_RANGE,
+                           "grading towards %s = %g m: a point of the block expected, 0 to %g m",
+                           axis_name[d], def->towards[d], def->size[d]);
     return build_lattice(def, false, place_block, name, mesh);
 }
 

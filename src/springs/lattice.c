@@ -105,6 +105,7 @@ bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face
     }
     bool bcc = shape->pattern == SN_PATTERN_BCC;
     if (shape->shape != SN_SHAPE_BLOCK || shape->pattern == SN_PATTERN_KUHN) return false;
+    if (shape->ratio > 0 && shape->ratio != 1) return false; // cells of many sizes: no classes
     for (int d = 0; d < 3; d++) {
         double D[3] = {0};
         D[d] = h[d];

@@ -93,6 +93,8 @@ mv analyze-sine-1.json analyze-dynamic-2.json
 "$SINEW" run c.yaml --engine continuum --refine 2 --json >run-3.json
 "$SINEW" calibrate c.yaml --json >calibrate-1.json
 "$SINEW" compare c.yaml --json >compare-1.json
+"$SINEW" compare c.yaml c.yaml --models P1 --json >study-1.json
+"$SINEW" compare c.yaml c.yaml --json >study-2.json
 "$SINEW" convert t.yaml t.feb --stress-unit kPa --time-unit s --json >convert-1.json
 for topic in equations options keys laws memories protocols; do
     "$SINEW" list $topic --json >list-$topic.json

@@ -448,9 +448,73 @@ static void ellipsoids(void **state) {
     assert_null(m);
 }
 
+// Positions of the nodes along one edge of a block, rising.
+static int along_edge(const sn_mesh *m, int axis, double *x) {
+    int count = 0;
+    for (int a = 0; a < m->node_count; a++) {
+        const double *p = m->node + 3 * a;
+        if (p[(axis + 1) % 3] == 0 && p[(axis + 2) % 3] == 0) x[count++] = p[axis];
+    }
+    return count;
+}
+
+// Cells grow away from a point by the ratio that is asked for, on both sides of it alike, and a
+// mesh of twice the cells has all nodes of the coarse one.
+static void graded_blocks(void **state) {
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        sn_shape_def d = {.shape = SN_SHAPE_BLOCK,
+                          .pattern = patterns[k],
+                          .size = {0.3, 0.2, 0.1},
+                          .cells = {200, 4, 2},
+                          .ratio = 4,
+                          .towards = {0.1, 0, 0.1}};
+        sn_mesh *m, *fine;
+        double x[401], y[401];
+        CHECK_OK(sn_mesh_build(&d, &m));
+        check_sound(m, 0.3 * 0.2 * 0.1);
+        assert_int_equal(along_edge(m, 0, x), 201);
+        double least = 1;
+        for (int i = 0; i < 200; i++) least = fmin(least, x[i + 1] - x[i]);
+        // the last of 200 cells is half a cell short of the end of the curve: 1.2 / 200 off
+        CHECK_REL((x[200] - x[199]) / least, 4, 0.02);
+        for (int i = 1; i < 200; i++) {
+            // a geometric series: the same factor from cell to cell, down to the point and up again
+            double growth = (x[i + 1] - x[i]) / (x[i] - x[i - 1]);
+            if (x[i - 1] < 0.1 && x[i + 1] > 0.1) continue;
+            CHECK_REL(x[i] < 0.1 ? 1 / growth : growth, (x[200] - x[199]) / (x[199] - x[198]),
+                      1e-9);
+        }
+        // the short end of y at 0, of z at 0.1
+        assert_int_equal(along_edge(m, 1, y), 5);
+        assert_true(y[1] < 0.5 * (y[4] - y[3]));
+        assert_int_equal(along_edge(m, 2, y), 3);
+        assert_true(y[1] > 0.06 && y[2] == 0.1);
+        for (int i = 0; i < 3; i++) d.cells[i] *= 2;
+        CHECK_OK(sn_mesh_build(&d, &fine));
+        assert_int_equal(along_edge(fine, 0, y), 401);
+        for (int i = 0; i <= 200; i++) CHECK_ABS(y[2 * i], x[i], 1e-15);
+        sn_mesh_destroy(m);
+        sn_mesh_destroy(fine);
+        // a ratio of 1 is no grading
+        for (int i = 0; i < 3; i++) d.cells[i] = 3;
+        d.ratio = 1;
+        CHECK_OK(sn_mesh_build(&d, &m));
+        assert_int_equal(along_edge(m, 0, x), 4);
+        CHECK_ABS(x[1], 0.1, 1e-16);
+        sn_mesh_destroy(m);
+        d.ratio = 0.5;
+        CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "ratio 0.5");
+        d.ratio = 3;
+        d.towards[1] = 0.21;
+        CHECK_FAILS(sn_mesh_build(&d, &m), SN_E_RANGE, "towards y");
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks),
+        cmocka_unit_test(graded_blocks),
         cmocka_unit_test(tubes),
         cmocka_unit_test(cylinders),
         cmocka_unit_test(ellipsoids),
