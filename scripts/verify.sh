@@ -47,6 +47,9 @@ line "instruction sets whose history differs from scalar's in any bit" $differin
 # published benchmarks of the finite elements
 scripts/verify-benchmarks.sh "$sinew" $out/benchmarks || bad=1
 
+# the parallel solver's iterations stay bounded
+scripts/verify-multigrid.sh "$sinew" $out/multigrid || bad=1
+
 # 95 % intervals of fits of random tissues hold the truth as often as they say
 cmake --preset check >/dev/null
 cmake --build --preset check --target verification_coverage >/dev/null

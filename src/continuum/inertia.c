@@ -25,7 +25,7 @@ static double overlap(int nodes, int a, int b) {
     return (shared == 2 ? 32.0 : shared == 1 ? 16.0 : 8.0) / 420.0;
 }
 
-// out += M z for nodal vectors.
+// out += M z for nodal vectors, on all ranks alike.
 static void multiply(const sn_fe_inertia *m, const sn_fe_space *s, const double *z, double *out) {
     int width = s->batch_cells, nodes = s->element.nodes;
     for (int b = 0; b < s->batches; b++)
@@ -42,6 +42,7 @@ static void multiply(const sn_fe_inertia *m, const sn_fe_space *s, const double 
                     out[3 * (size_t)node[k * width] + (size_t)i] += mass * sum[i];
             }
         }
+    sn_fe_gather_nodes(s, out);
 }
 
 static void assemble(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p) {

@@ -17,13 +17,13 @@ static void scale_state(const sn_fe_march *m, double by, double *out) {
 static double largest_strain(const sn_fe_problem *p, const double *x) {
     sn_fe_fault fault;
     double largest = 0.0;
-    for (int b = 0; b < p->space->batches; b++) {
+    for (int b = 0; b < p->space->batches && isfinite(largest); b++) {
         if (!sn_fe_points_at(p->space, p->materials, b, x, 0, &p->work->points, &fault))
-            return (double)INFINITY;
-        for (int k = 0; k < 6 * SN_FE_POINTS; k++)
+            largest = (double)INFINITY;
+        for (int k = 0; k < 6 * SN_FE_POINTS && isfinite(largest); k++)
             largest = fmax(largest, fabs(p->work->points.E[k]));
     }
-    return largest;
+    return sn_fe_largest(p->space->ranks, largest);
 }
 
 // The factor s of the head of linear.h; 1 where nothing is strained.
@@ -51,6 +51,7 @@ static void add_forces(sn_fe_march *m, double s, double by, double *out) {
         (void)good;
         sn_fe_cell_forces(p->space, b, p->work, p->residual);
     }
+    sn_fe_gather_nodes(p->space, p->residual);
     for (int d = 0; d < 3 * p->space->nodes; d++) out[d] += by * p->residual[d];
 }
 
@@ -95,7 +96,7 @@ static void combine(double *plus, const double *minus, size_t count, double s, b
 
 static sn_status emit(sn_fe_march *m, double s) {
     sn_fe_measure *f = m->measure;
-    if (!m->output || !m->output->frame) return SN_OK;
+    if (!f->fields) return SN_OK;
     size_t corners = (size_t)m->problem->space->corners, cells = (size_t)m->c->mesh->cell_count;
     double *const field[] = {f->pressure, f->strain, f->stress, f->energy};
     const size_t count[] = {corners, 6 * cells, 6 * cells, cells};
@@ -135,7 +136,7 @@ static sn_status solve(sn_fe_march *m, bool factored) {
         if (row[d] >= 0) n->right[row[d]] = p->external[d] - p->lifted[d];
     if (!factored) SN_TRY(sn_fe_solver_factor(p->solver, &good));
     if (good) SN_TRY(sn_fe_solver_solve(p->solver, n->right, n->solution));
-    for (int k = 0; k < p->pattern->rows && good; k++) good = isfinite(n->solution[k]);
+    for (int k = 0; k < p->pattern->total && good; k++) good = isfinite(n->solution[k]);
     if (!good)
         return sn_fail(SN_E_SOLVER,
                        "the stiffness at rest is singular: a part of the body hangs on "

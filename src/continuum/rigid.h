@@ -14,7 +14,7 @@
 void sn_fe_rigid_find(sn_fe_space *s);
 /// Checks that every part of a body in several parts is held on its own.
 /// @return SN_OK, SN_E_DEFINITION, SN_E_MEMORY.
-sn_status sn_fe_rigid_parts(const sn_fe_space *s);
+sn_status sn_fe_rigid_parts(const sn_fe_space *s, const sn_mesh *mesh);
 /// Checks that no load pushes along a free motion. @return SN_OK, SN_E_DEFINITION, SN_E_MEMORY.
 sn_status sn_fe_rigid_check(const sn_fe_space *s, const sn_case *c, sn_fe_boundary *b);
 /// Takes the free motions out of an increment of the state x.
