@@ -53,6 +53,9 @@ scripts/verify-closed.sh "$sinew" $out/closed || bad=1
 # hard cases from default settings
 scripts/verify-robust.sh "$sinew" $out/robust || bad=1
 
+# the parallel solver's iterations stay bounded
+scripts/verify-multigrid.sh "$sinew" $out/multigrid || bad=1
+
 # 95 % intervals of fits of random tissues hold the truth as often as they say
 cmake --preset check >/dev/null
 cmake --build --preset check --target verification_coverage >/dev/null

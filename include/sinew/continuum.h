@@ -20,6 +20,21 @@ extern "C" {
 SN_API sn_status sn_continuum_run(const sn_case *c, const sn_output *output,
                                   sn_run_summary *summary, sn_record *history);
 
+//---- several processes ---------------------------------------------------------------------------
+// Processes that mpirun has started share a run of sn_continuum_run(), _resume() and _refine(): all
+// call it with the same case and get the same history and summary. Frames and states are handed out
+// on the first alone. Everything else runs in each process for itself.
+
+/// Joins the processes of the launcher, where there is one: *count 1 where not.
+SN_API sn_status sn_ranks_join(int *rank, int *count);
+/// The same status on all, with its text: SN_OK where it was SN_OK everywhere. All must call it.
+SN_API sn_status sn_ranks_agree(sn_status status);
+/// Whether this process left a run with an error that the others, still in it, do not know of: what
+/// is left is sn_ranks_abort().
+SN_API bool sn_ranks_lost(void);
+/// Ends all processes.
+SN_API void sn_ranks_abort(int code);
+
 //---- going on where a run was killed -------------------------------------------------------------
 
 /// sn_continuum_run() that saves its state, or goes on from a saved one of the same case; steps,
@@ -79,23 +94,30 @@ SN_API void sn_refinement_release(sn_refinement *r);
 
 //---- benchmark ----------------------------------------------------------------------------------
 
-/// What sn_continuum_bench() measures; times are seconds of the processor.
+/// What sn_continuum_bench() measures; times but wall_s are seconds of the processor, of the rank
+/// that took the longest.
 typedef struct sn_continuum_bench_row {
     sn_element element;
     int nodes, cells, unknowns, steps;
-    int newton_iterations, factorisations;
-    int applications;         ///< of the factors, in all linear solutions
+    int ranks;
+    int newton_iterations, factorisations; ///< or hierarchies of multigrid
+    int applications;         ///< of the factors or of multigrid, in all linear solutions
+    int systems;              ///< that were solved
+    int rescues;              ///< of these, that multigrid had to leave to factors
+    int cycles;               ///< iterative: of multigrid, for the last system to 1e-8 of its size
     double residual_ns;       ///< a cell: one evaluation of the forces, insertion included
     double tangent_ns;        ///< a cell: one tangent, insertion included
     double solve_s;           ///< factorisations and solutions
     double total_s;           ///< from the case to the last step
-    double peak_memory_bytes; ///< 0 where the system does not say
+    double wall_s;            ///< the same by the clock on the wall
+    double peak_memory_bytes; ///< of all ranks; 0 where the system does not say
 } sn_continuum_bench_row;
 
 /// Times a clamped cube of `cells`^3 times six tetrahedra pulled by 30 % in 10 steps
 /// (Mooney-Rivlin, c1 = 1 Pa, c2 = 0.1 Pa, bulk modulus 100 Pa), to the default tolerance.
 /// @return SN_OK, SN_E_RANGE (cells), SN_E_SOLVER (it did not converge), SN_E_MEMORY.
-SN_API sn_status sn_continuum_bench(sn_element element, int cells, sn_continuum_bench_row *row);
+SN_API sn_status sn_continuum_bench(sn_element element, int cells, sn_solver solver,
+                                    sn_continuum_bench_row *row);
 
 #ifdef __cplusplus
 }

@@ -232,6 +232,11 @@ typedef enum sn_analysis {
     SN_ANALYSIS_LINEAR   ///< small strain: the tangent at rest, one linear system
 } sn_analysis;
 
+typedef enum sn_solver {
+    SN_SOLVER_DIRECT,   ///< MUMPS
+    SN_SOLVER_ITERATIVE ///< Krylov with multigrid: less memory, for large bodies and many ranks
+} sn_solver;
+
 typedef struct sn_continuum_def {
     sn_element element;
     sn_analysis analysis;
@@ -242,6 +247,7 @@ typedef struct sn_continuum_def {
     double rho_infinity;     ///< dynamic: spectral radius at infinite frequency, 0 to 1
     double tolerance;        ///< relative residual at which Newton stops
     double memory_tolerance; ///< largest error of the exponentials, of G(0)
+    sn_solver solver;        ///< of linear systems
 } sn_continuum_def;
 
 #define SN_STEP_TOLERANCE 1e-4 ///< what a case file takes for `step: auto`
@@ -467,6 +473,7 @@ typedef struct sn_run_summary {
     double memory_error;     ///< stated error of the exponentials, of G(0)
     double memory_band_s[2]; ///< over this band
     int threads;
+    int ranks;                       ///< processes that shared the work
     int newton_iterations, cutbacks; ///< 0 for explicit runs
     bool converged;
     char reason[SN_TEXT_MAX]; ///< why it stopped early, with numbers; empty when it did not

@@ -120,7 +120,7 @@ static int bench_springs(const cli_arguments *arguments) {
 
 static int run(const cli_command *command, int argc, char **argv) {
     static const char *const subjects[] = {"springs", "fit", "continuum"};
-    cli_bench_choice choice = {.most_nodes = 13000, .repeat = 1};
+    cli_bench_choice choice = {.most_nodes = 13000, .repeat = 1, .ranks = 1, .solver = "direct"};
     bool haptic = false;
     double seconds = 5;
     const cli_option options[] = {
@@ -128,22 +128,32 @@ static int run(const cli_command *command, int argc, char **argv) {
          "springs: frames of 1 ms of a poked block, and the largest block that holds them"},
         {"time", CLI_QUANTITY, "T", "s", &seconds,
          "haptic: how long each size must hold its frames, of simulated time; 5 s"},
-        {"element", CLI_TEXT, "P1|P2P1", NULL, &choice.element, "continuum: only this element"},
+        {"element", CLI_TEXT, "P1|P2|P2P1", NULL, &choice.element,
+         "continuum: only this element; P2 only by name"},
+        {"solver", CLI_TEXT, "NAME", NULL, &choice.solver, "continuum: direct or iterative"},
         {"nodes", CLI_INTEGER, "N", NULL, &choice.most_nodes,
          "continuum: bodies of at most N nodes; 50653 is the largest"},
+        {"ranks", CLI_INTEGER, "N", NULL, &choice.ranks,
+         "continuum: each body on one process and, by mpirun, on N"},
         {"repeat", CLI_INTEGER, "N", NULL, &choice.repeat, "continuum: the best of N runs"},
     };
     cli_arguments arguments;
-    int code = cli_parse(command, argc, argv, options, 5, &arguments);
+    int code = cli_parse(command, argc, argv, options, 7, &arguments);
     if (code >= 0) return code;
     if (arguments.count > 1)
         return cli_refuse("bench: expected one subject: springs, fit or continuum");
     const char *subject = arguments.count ? arguments.item[0] : subjects[0];
     if (haptic && strcmp(subject, "springs") != 0)
         return cli_refuse("bench: --haptic belongs to springs");
+    if (choice.ranks > 1 && cli_ranks() > 1)
+        return cli_refuse("bench: --ranks starts mpirun itself: leave one of the two out");
     if (!strcmp(subject, "continuum")) return cli_bench_continuum(&arguments, &choice);
-    if (choice.element || choice.most_nodes != 13000 || choice.repeat != 1)
-        return cli_refuse("bench: --element, --nodes and --repeat belong to: bench continuum");
+    if (cli_ranks() > 1)
+        return cli_refuse("bench: %s runs in one process; mpirun is for: bench continuum", subject);
+    if (choice.element || choice.most_nodes != 13000 || choice.repeat != 1 || choice.ranks != 1 ||
+        strcmp(choice.solver, "direct") != 0)
+        return cli_refuse("bench: --element, --nodes, --ranks, --repeat and --solver belong to: "
+                          "bench continuum");
     if (haptic) return cli_bench_haptic(&arguments, seconds);
     if (!strcmp(subject, "springs")) return bench_springs(&arguments);
     if (!strcmp(subject, "fit")) return cli_bench_fit(&arguments);

@@ -81,13 +81,29 @@ void cli_spectrum_plot(sn_report *report, const sn_exponentials *e);
 /// What `sinew bench continuum` is to measure.
 typedef struct cli_bench_choice {
     const char *element; ///< NULL: all
+    const char *solver;  ///< direct or iterative
     int most_nodes;      ///< of a body
     int repeat;          ///< the best of as many
+    int ranks;           ///< 1, or on so many processes as well
 } cli_bench_choice;
+/// What `sinew bench continuum` prints under mpirun with the same choice; NULL, and a message,
+/// where that fails (bench_ranks.c). To be called before MPI starts in this process.
+json_t *cli_bench_on_ranks(const cli_bench_choice *choice);
 /// sinew bench continuum (bench_continuum.c).
 int cli_bench_continuum(const cli_arguments *arguments, const cli_bench_choice *choice);
 /// sinew bench springs --haptic (bench_haptic.c).
 int cli_bench_haptic(const cli_arguments *arguments, double seconds);
+
+//---- several processes (ranks.c) -----------------------------------------------------------------
+
+/// Joins the ranks of mpirun, if there are any; all but the first fall silent.
+/// @return -1 to go on, or the exit code where the command does not run on several.
+int cli_ranks_join(const char *command);
+/// The exit code of the command; ends all ranks where this one failed and the others do not know.
+int cli_ranks_leave(int code);
+/// This rank, and how many there are.
+int cli_rank(void);
+int cli_ranks(void);
 
 //---- progress ------------------------------------------------------------------------------------
 

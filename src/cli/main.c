@@ -43,8 +43,10 @@ int main(int argc, char **argv) {
     const char *names[COMMANDS];
     for (int k = 0; k < COMMANDS; k++) {
         names[k] = commands[k]->name;
-        if (strcmp(argv[1], names[k]) == 0)
-            return commands[k]->run(commands[k], argc - 1, argv + 1);
+        if (strcmp(argv[1], names[k]) != 0) continue;
+        int code = cli_ranks_join(names[k]);
+        if (code < 0) code = commands[k]->run(commands[k], argc - 1, argv + 1);
+        return cli_ranks_leave(code);
     }
     return cli_unknown("command", argv[1], names, COMMANDS);
 }

@@ -25,6 +25,7 @@ static void put_cost(json_t *json, const sn_run_summary *s) {
     cli_put_number(json, "step_wall_p99_s", s->step_wall_p99_s);
     cli_put_number(json, "step_wall_max_s", s->step_wall_max_s);
     cli_put_integer(json, "threads", s->threads);
+    cli_put_integer(json, "ranks", s->ranks);
     cli_put_integer(json, "newton_iterations", s->newton_iterations);
     cli_put_integer(json, "cutbacks", s->cutbacks);
 }
@@ -250,18 +251,38 @@ static sn_status run_engine(const sn_case *c, const sn_output *output, const run
         return (run_by_order(o->by) ? sn_continuum_raise : sn_continuum_refine)(
             c, o->refine, output, summary, history, &r->refinement);
     sn_restart restart = {0};
-    if (o->folder) {
+    if (o->folder && cli_rank() == 0) {
         snprintf(folder, sizeof folder, "%s", o->folder);
         restart = (sn_restart){.context = folder, .save = run_state_write};
     }
-    if (o->resume) SN_TRY(run_state_read(o->folder, &state, &restart.bytes));
+    sn_status status = SN_OK;
+    if (o->resume) status = run_state_read(o->folder, &state, &restart.bytes);
+    SN_TRY(sn_ranks_agree(status));
     restart.state = state;
-    sn_status status = strcmp(o->engine, "continuum") == 0
-                           ? sn_continuum_resume(c, output, &restart, summary, history)
-                           : sn_springs_resume(c, output, &restart, summary, history);
+    status = strcmp(o->engine, "continuum") == 0
+                 ? sn_continuum_resume(c, output, &restart, summary, history)
+                 : sn_springs_resume(c, output, &restart, summary, history);
     sn_free(state);
-    if (status == SN_OK && o->folder && summary->converged) run_state_remove(o->folder);
+    if (status == SN_OK && o->folder && cli_rank() == 0 && summary->converged)
+        run_state_remove(o->folder);
     return status;
+}
+
+// The case, and all that a run fills; of several ranks the first alone writes files.
+static sn_status prepare(const char *path, const run_options *o, sn_case **c, sn_record **history,
+                         run_context *r) {
+    SN_TRY(sn_case_read(path, c));
+    SN_TRY(sn_record_create((*c)->name, history));
+    SN_TRY(sn_record_create((*c)->name, &r->energy));
+    r->history = *history;
+    r->nodes = (*c)->mesh->node_count;
+    r->displacement = sn_alloc((size_t)r->nodes, 3 * sizeof *r->displacement);
+    r->cells = (*c)->mesh->cell_count;
+    r->removed = sn_alloc((size_t)r->cells, sizeof *r->removed);
+    if (!r->displacement || !r->removed) return SN_E_MEMORY;
+    if (!o->folder || cli_rank() > 0) return SN_OK;
+    SN_TRY(sn_folder_make(o->folder));
+    return sn_vtu_create(o->folder, "fields", (*c)->mesh, &r->vtu);
 }
 
 static sn_status run_case(const char *path, const run_options *o, const cli_arguments *arguments,
@@ -271,23 +292,8 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
     run_context r = {.progress = cli_progress_start(arguments), .earlier = o->resume ? -1 : 0};
     sn_output output = {.context = &r, .frame = take_frame, .progress = pass_progress};
     sn_status status;
-    SN_TRY_GOTO(status, sn_case_read(path, &c));
-    SN_TRY_GOTO(status, sn_record_create(c->name, &history));
-    SN_TRY_GOTO(status, sn_record_create(c->name, &r.energy));
+    SN_TRY_GOTO(status, sn_ranks_agree(prepare(path, o, &c, &history, &r)));
     output.energy = o->folder ? r.energy : NULL;
-    r.nodes = c->mesh->node_count;
-    r.displacement = sn_alloc((size_t)r.nodes, 3 * sizeof *r.displacement);
-    r.cells = c->mesh->cell_count;
-    r.removed = sn_alloc((size_t)r.cells, sizeof *r.removed);
-    if (!r.displacement || !r.removed) {
-        status = SN_E_MEMORY;
-        goto fail;
-    }
-    r.history = history;
-    if (o->folder) {
-        SN_TRY_GOTO(status, sn_folder_make(o->folder));
-        SN_TRY_GOTO(status, sn_vtu_create(o->folder, "fields", c->mesh, &r.vtu));
-    }
     status = run_engine(c, &output, o, &r, summary, history);
     cli_progress_end(&r.progress);
     run_mesh_note(c->mesh, summary);
@@ -295,7 +301,8 @@ static sn_status run_case(const char *path, const run_options *o, const cli_argu
         status = sn_fail_within(status, "%s", path);
         goto fail;
     }
-    if (o->folder) SN_TRY_GOTO(status, write_results(o->folder, c, summary, history, &r));
+    if (o->folder && cli_rank() == 0)
+        SN_TRY_GOTO(status, write_results(o->folder, c, summary, history, &r));
     if (arguments->json)
         cli_print_json(summary_json(summary, history, &r.refinement));
     else if (!arguments->quiet)
@@ -315,6 +322,9 @@ fail:
 static int check_options(const run_options *o) {
     if (o->refine && strcmp(o->engine, "springs") == 0)
         return cli_refuse("run: --refine is for --engine continuum");
+    if (cli_ranks() > 1 && strcmp(o->engine, "springs") == 0)
+        return cli_refuse("run: --engine springs runs in one process (springs: threads); mpirun is "
+                          "for --engine continuum");
     if (o->refine && o->resume) return cli_refuse("run: --refine and --resume exclude each other");
     if (o->refine == 1 || o->refine > SN_REFINE_MAX)
         return cli_refuse("--refine: found %d, expected 2 or 3 meshes", o->refine);

@@ -37,7 +37,7 @@ static double peak_memory(void) {
 
 //---- the case -----------------------------------------------------------------------------------
 
-static sn_status bench_case(sn_element element, int cells, sn_case **out) {
+static sn_status bench_case(sn_element element, int cells, sn_solver solver, sn_case **out) {
     static const char *const name[] = {"c1", "c2", "bulk_modulus"};
     static const double value[] = {1.0, 0.1, 100.0};
     SN_TRY(sn_case_create(out));
@@ -66,6 +66,7 @@ static sn_status bench_case(sn_element element, int cells, sn_case **out) {
     c->until = c->output_every = 1.0;
     c->continuum.element = element;
     c->continuum.steps = STEPS;
+    c->continuum.solver = solver;
     return sn_case_check(c);
 }
 
@@ -91,15 +92,44 @@ static void describe(sn_fe_march *m, const sn_run_summary *summary, sn_continuum
     sn_fe_solver_work work = sn_fe_solver_done(m->problem->solver);
     row->nodes = m->problem->space->nodes;
     row->cells = m->c->mesh->cell_count;
-    row->unknowns = m->problem->pattern->rows;
+    row->unknowns = m->problem->pattern->unknowns;
     row->steps = (int)summary->steps;
+    row->ranks = m->problem->space->ranks->count;
     row->newton_iterations = summary->newton_iterations;
+    row->systems = work.systems;
+    row->rescues = work.rescues;
     row->factorisations = work.factorisations;
     row->applications = work.applications;
     row->solve_s = work.seconds;
 }
 
-sn_status sn_continuum_bench(sn_element element, int cells, sn_continuum_bench_row *row) {
+// Cycles of multigrid for the tangent at the last state under a dead pull, from a new hierarchy.
+static sn_status count_cycles(sn_fe_march *m, sn_continuum_bench_row *row) {
+    sn_fe_problem *p = m->problem;
+    sn_fe_newton *n = &m->newton;
+    bool good;
+    int before = row->applications;
+    memset(n->right, 0, (size_t)p->pattern->total * sizeof *n->right);
+    sn_fe_problem_tangent(p, m->x, NULL);
+    for (int a = 0; a < p->space->nodes; a++)
+        if (p->pattern->row[3 * a + 2] >= 0) n->right[p->pattern->row[3 * a + 2]] = 1.0;
+    sn_fe_solver_forget(p->solver);
+    SN_TRY(sn_fe_solver_reduce(p->solver, 1e-8, n->right, n->solution, &good));
+    row->cycles = sn_fe_solver_done(p->solver).applications - before;
+    return SN_OK;
+}
+
+// Times of the slowest rank, memory of all.
+static void join_ranks(const sn_fe_ranks *r, sn_continuum_bench_row *row) {
+    double *const largest[] = {&row->residual_ns, &row->tangent_ns, &row->solve_s, &row->total_s,
+                               &row->wall_s};
+    for (size_t k = 0; k < sizeof largest / sizeof *largest; k++)
+        *largest[k] = sn_fe_largest(r, *largest[k]);
+    row->peak_memory_bytes = sn_fe_sum(r, row->peak_memory_bytes);
+}
+
+sn_status sn_continuum_bench(sn_element element, int cells, sn_solver solver,
+                             sn_continuum_bench_row *row) {
     sn_status status = SN_OK;
     sn_case *c = NULL;
     sn_record *history = NULL;
@@ -109,17 +139,21 @@ sn_status sn_continuum_bench(sn_element element, int cells, sn_continuum_bench_r
     if (cells < 1 || cells > 200)
         return sn_fail(SN_E_RANGE, "bench: %d cells an edge; expected 1 to 200", cells);
     forget_peak();
-    double start = processor_seconds();
-    SN_TRY_GOTO(status, bench_case(element, cells, &c));
+    double start = processor_seconds(), clock = sn_clock();
+    SN_TRY_GOTO(status, bench_case(element, cells, solver, &c));
     SN_TRY_GOTO(status, sn_record_create("bench", &history));
     SN_TRY_GOTO(status, sn_fe_march_init(&march, c, NULL, &summary, history));
     SN_TRY_GOTO(status, sn_fe_march_go(&march));
     row->total_s = processor_seconds() - start;
+    row->wall_s = sn_clock() - clock;
     row->peak_memory_bytes = peak_memory();
     describe(&march, &summary, row);
     time_assembly(&march, row);
+    join_ranks(march.problem->space->ranks, row);
     if (march.stopped)
         status = sn_fail(SN_E_SOLVER, "bench: it did not converge: %.150s", summary.reason);
+    else if (solver == SN_SOLVER_ITERATIVE)
+        status = count_cycles(&march, row);
 fail:
     sn_fe_march_free(&march);
     sn_record_destroy(history);

@@ -54,12 +54,11 @@ static sn_status make_force(const sn_case *c, const sn_fe_space *s, int load, sn
     SN_TRY(sn_mesh_locate(c->mesh, c->load[load].point, &cell, weight));
     double *f = b->traction[load] = sn_alloc(3 * (size_t)s->nodes, sizeof *f);
     if (!f) return SN_E_MEMORY;
-    int place = sn_fe_space_place(s, cell), batch = place / s->batch_cells;
+    int node[SN_FE_NODES];
+    sn_fe_cell_nodes(s, c->mesh, cell, node);
     sn_fe_cell_shape(nodes, weight, shape);
-    for (int a = 0; a < nodes; a++) {
-        int node = s->node[(batch * nodes + a) * s->batch_cells + place % s->batch_cells];
-        for (int i = 0; i < 3; i++) f[3 * node + i] += shape[a] * c->load[load].vector[i];
-    }
+    for (int a = 0; a < nodes; a++)
+        for (int i = 0; i < 3; i++) f[3 * node[a] + i] += shape[a] * c->load[load].vector[i];
     return SN_OK;
 }
 

@@ -22,7 +22,8 @@ typedef struct sn_fe_spot {
 } sn_fe_spot;
 
 typedef struct sn_fe_boundary {
-    double *gravity;      ///< nodal forces, N; NULL without gravity    (3 x nodes)
+    double *gravity;      ///< nodal forces, N; NULL without gravity; at first of the cells of this
+                          ///< rank alone                               (3 x nodes)
     double **traction;    ///< nodal forces of tractions and forces at factor 1, else NULL  (loads)
     sn_fe_faces *pressed; ///< faces of pressure loads                  (loads)
     bool symmetric;       ///< the tangent: no pressure, no friction

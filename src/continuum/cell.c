@@ -222,6 +222,36 @@ static void mix(const sn_fe_space *s, const sn_fe_material *m, int q, int first,
                 work->M[4 * a + b][c] += soft * e->lambda[q][a] * e->lambda[q][b] * weight[c];
 }
 
+// Adds the cells' share in the diagonal of the pressures' Schur complement (multigrid.h): the
+// pressures' mass over mu and over K. For 2 mu dev e : dev e the trace of the cell's matrix is
+// 10/3 mu sum_a int |grad N_a|^2, which gives the mu of the cell as it is strained; of such a
+// material S is 3/4 of the mass over mu.
+static void soften(const sn_fe_space *s, const sn_fe_material *m, int batch, int first,
+                   const sn_fe_work *work, double *soft) {
+    const sn_fe_element *e = &s->element;
+    int width = s->batch_cells, count = s->batch_count[batch] - first;
+    const double *g = s->gradient + (size_t)batch * (size_t)(12 * width) + first;
+    double by[4][4] = {{0}};
+    for (int q = 0; q < e->points; q++)
+        for (int a = 0; a < e->nodes; a++)
+            for (int k = 0; k < 4; k++)
+                for (int l = 0; l < 4; l++)
+                    by[k][l] += e->weight[q] * e->slope[q][a][k] * e->slope[q][a][l];
+    for (int c = 0; c < L && c < count; c++) {
+        double trace = 0.0, slopes = 0.0, volume = s->volume[batch * width + first + c];
+        for (int a = 0; a < e->nodes; a++)
+            for (int i = 0; i < 3; i++) trace += work->K[a * SN_FE_NODES + a][4 * i * L + c];
+        for (int k = 0; k < 4; k++)
+            for (int l = 0; l < 4; l++)
+                for (int i = 0; i < 3; i++)
+                    slopes += by[k][l] * g[(3 * k + i) * width + c] * g[(3 * l + i) * width + c];
+        double mu = 0.3 * fabs(trace) / (volume * slopes);
+        double K = m->part[SN_PART_VOLUMETRIC].factor * m->bulk;
+        for (int k = 0; k < 4; k++)
+            soft[sn_fe_cell_block(s, batch, first + c, k)] += 0.1 * volume * (0.75 / mu + 1.0 / K);
+    }
+}
+
 /// Where the tangent of one cell goes.
 typedef struct target {
     const sn_fe_matrix *matrix;
@@ -297,6 +327,7 @@ void sn_fe_cell_tangent(const sn_fe_space *s, const sn_fe_material *m, int batch
             corner_tangent(s, batch, q, first, work);
             if (!linear) mix(s, m, q, first, work);
         }
+        if (matrix->soft) soften(s, m, batch, first, work, matrix->soft);
         for (int lane = 0; lane < L && first + lane < s->batch_count[batch]; lane++) {
             int at = first + lane;
             target t = {.matrix = matrix,

@@ -27,7 +27,7 @@ static double overlap(int nodes, int a, int b) {
     return (shared == 2 ? 32.0 : shared == 1 ? 16.0 : 8.0) / 420.0;
 }
 
-// out += M z for nodal vectors.
+// out += M z for nodal vectors, on all ranks alike.
 static void multiply(const sn_fe_inertia *m, const sn_fe_space *s, const double *z, double *out) {
     int width = s->batch_cells, nodes = s->element.nodes;
     for (int b = 0; b < s->batches; b++)
@@ -44,6 +44,7 @@ static void multiply(const sn_fe_inertia *m, const sn_fe_space *s, const double 
                     out[3 * (size_t)node[k * width] + (size_t)i] += mass * sum[i];
             }
         }
+    sn_fe_gather_nodes(s, out);
 }
 
 static void assemble(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p) {
@@ -200,7 +201,7 @@ double sn_fe_inertia_transit(const sn_case *c, const sn_fe_space *s) {
         for (int at = 0; at < s->batch_count[b]; at++)
             least = fmin(least, cbrt(6.0 * s->volume[b * s->batch_cells + at]) / speed);
     }
-    return least;
+    return -sn_fe_largest(s->ranks, -least);
 }
 
 void sn_fe_inertia_commit(sn_fe_inertia *m, const sn_fe_space *s, const sn_fe_pattern *p,

@@ -18,13 +18,13 @@ static void scale_state(const sn_fe_march *m, double by, double *out) {
 static double largest_strain(const sn_fe_problem *p, const double *x) {
     sn_fe_fault fault;
     double largest = 0.0;
-    for (int b = 0; b < p->space->batches; b++) {
+    for (int b = 0; b < p->space->batches && isfinite(largest); b++) {
         if (!sn_fe_points_at(p->space, p->materials, b, x, 0, &p->work->points, &fault))
-            return (double)INFINITY;
-        for (int k = 0; k < 6 * SN_FE_POINTS; k++)
+            largest = (double)INFINITY;
+        for (int k = 0; k < 6 * SN_FE_POINTS && isfinite(largest); k++)
             largest = fmax(largest, fabs(p->work->points.E[k]));
     }
-    return largest;
+    return sn_fe_largest(p->space->ranks, largest);
 }
 
 // The factor s of the head of linear.h; 1 where nothing is strained.
@@ -52,6 +52,7 @@ static void add_forces(sn_fe_march *m, double s, double by, double *out) {
         (void)good;
         sn_fe_cell_forces(p->space, b, p->work, p->residual);
     }
+    sn_fe_gather_nodes(p->space, p->residual);
     for (int d = 0; d < 3 * p->space->nodes; d++) out[d] += by * p->residual[d];
 }
 
@@ -104,7 +105,7 @@ static void combine_stretches(double *plus, const double *minus, size_t cells, d
 
 static sn_status emit(sn_fe_march *m, double s) {
     sn_fe_measure *f = m->measure;
-    if (!m->output || !m->output->frame) return SN_OK;
+    if (!f->fields) return SN_OK;
     size_t corners = (size_t)m->problem->space->corners, cells = (size_t)m->c->mesh->cell_count;
     enum { FIELDS = 6, ENERGY = 4, STRETCH = 5 };
     double *const field[FIELDS] = {f->pressure,  f->strain, f->stress,
@@ -148,7 +149,7 @@ static sn_status solve(sn_fe_march *m) {
         if (row[d] >= 0) n->right[row[d]] = p->external[d] - p->lifted[d];
     // factors of large systems are rough: the solver iterates with them, and keeps them
     SN_TRY(sn_fe_solver_reduce(p->solver, SOLVED, n->right, n->solution, &good));
-    for (int k = 0; k < p->pattern->rows && good; k++) good = isfinite(n->solution[k]);
+    for (int k = 0; k < p->pattern->total && good; k++) good = isfinite(n->solution[k]);
     if (!good)
         return sn_fail(SN_E_SOLVER,
                        "the stiffness at rest is singular: a part of the body hangs on "

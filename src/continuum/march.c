@@ -44,6 +44,16 @@ static double shortest_useful(const sn_fe_march *m) {
     return fmin(part * sn_fe_inertia_transit(m->c, m->problem->space), m->schedule.longest);
 }
 
+static sn_status alloc_states(sn_fe_march *m) {
+    size_t dofs = (size_t)m->problem->space->dofs;
+    m->x = sn_alloc(dofs, sizeof *m->x);
+    bool room = true;
+    for (int k = 0; k < SN_FE_PAST; k++) room &= !!(m->past[k] = sn_alloc(dofs, sizeof *m->x));
+    m->guess = sn_alloc(dofs, sizeof *m->guess);
+    m->force = sn_alloc(dofs, sizeof *m->force);
+    return room && m->x && m->guess && m->force ? SN_OK : SN_E_MEMORY;
+}
+
 sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *output,
                            sn_run_summary *summary, sn_record *history) {
     *m = (sn_fe_march){.c = c, .output = output, .summary = summary, .history = history};
@@ -53,16 +63,12 @@ sn_status sn_fe_march_init(sn_fe_march *m, const sn_case *c, const sn_output *ou
     SN_TRY(sn_fe_problem_create(c, m->schedule.shortest, &m->problem));
     SN_TRY(sn_fe_newton_init(&m->newton, m->problem, c->continuum.tolerance));
     SN_TRY(sn_case_history_columns(c, history));
-    SN_TRY(sn_fe_measure_create(m->problem, history, output && output->frame, &m->measure));
+    const sn_fe_ranks *ranks = m->problem->space->ranks;
+    bool fields = sn_fe_from_first(ranks, output && output->frame);
+    SN_TRY(sn_fe_measure_create(m->problem, history, fields, &m->measure));
     if (m->problem->inertia && c->continuum.step_tolerance > 0.0)
         m->pace = m->least_pace = shortest_useful(m);
-    size_t dofs = (size_t)m->problem->space->dofs;
-    m->x = sn_alloc(dofs, sizeof *m->x);
-    bool room = true;
-    for (int k = 0; k < SN_FE_PAST; k++) room &= !!(m->past[k] = sn_alloc(dofs, sizeof *m->x));
-    m->guess = sn_alloc(dofs, sizeof *m->guess);
-    m->force = sn_alloc(dofs, sizeof *m->force);
-    return room && m->x && m->guess && m->force ? SN_OK : SN_E_MEMORY;
+    return sn_fe_agree(ranks, alloc_states(m));
 }
 
 void sn_fe_march_free(sn_fe_march *m) {

@@ -71,8 +71,7 @@ static sn_status init_material(const sn_case *c, const sn_fe_space *s, int regio
     return init_memories(c, c->mesh->region_name[region], shortest, m);
 }
 
-// numbers of a point that a batch of the material keeps
-static size_t kept(const sn_fe_material *m) {
+size_t sn_fe_material_kept(const sn_fe_material *m) {
     size_t sum = m->remembers ? 2 * (size_t)m->numbers : 0;
     for (int k = 0; k < SN_PARTS && m->remembers; k++)
         sum += (size_t)(m->part[k].series.terms * m->part[k].count);
@@ -105,7 +104,7 @@ sn_status sn_fe_materials_create(const sn_case *c, const sn_fe_space *s, double 
     size_t total = 0;
     for (int b = 0; b < s->batches; b++) {
         m->at[b] = total;
-        total += kept(m->material + s->batch_region[b]) * N;
+        total += sn_fe_material_kept(m->material + s->batch_region[b]) * N;
     }
     status = SN_E_MEMORY;
     m->numbers = total;

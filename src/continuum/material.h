@@ -55,6 +55,8 @@ typedef struct sn_fe_materials {
 sn_status sn_fe_materials_create(const sn_case *c, const sn_fe_space *s, double shortest,
                                  sn_fe_materials **out);
 void sn_fe_materials_destroy(sn_fe_materials *m); // NULL is allowed
+/// How many numbers of a point `state` holds for a material.
+size_t sn_fe_material_kept(const sn_fe_material *m);
 /// Starts a step of h seconds (0: instantaneous): factors, and `past` of every point.
 void sn_fe_materials_begin(sn_fe_materials *m, const sn_fe_space *s, double h);
 /// `past` of a batch, (numbers x SN_FE_POINTS), or NULL where it does not remember.

@@ -115,6 +115,12 @@ void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *
                 m->pressure[node[k * width + at]] += 0.25 * s->volume[b * width + at] * extra;
         }
     }
+    sn_fe_gather_corners(s, m->pressure);
+    sn_fe_gather_cells(s->ranks, 6, m->strain);
+    sn_fe_gather_cells(s->ranks, 6, m->stress);
+    sn_fe_gather_cells(s->ranks, 6, m->reference);
+    sn_fe_gather_cells(s->ranks, 3, m->stretch);
+    sn_fe_gather_cells(s->ranks, 1, m->energy);
     for (int a = 0; a < s->corners; a++) {
         m->pressure[a] /= p->flux_scale[a];
         if (s->element.mixed) m->pressure[a] -= x[3 * s->nodes + a];
@@ -136,12 +142,13 @@ sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_
         fields[count++] = (sn_field){"velocity", "m/s", SN_ON_NODES, 3, p->inertia->v};
     if (p->space->rotated) fields[count++] = (sn_field){"fibre", "1", SN_ON_CELLS, 3, m->fibre};
     const sn_frame frame = {p->level.time, count, fields};
-    return output->frame(output->context, &frame);
+    bool first = p->space->ranks->rank == 0;
+    return sn_fe_agree(p->space->ranks, first ? output->frame(output->context, &frame) : SN_OK);
 }
 
 sn_status sn_fe_measure_frame(sn_fe_measure *m, const sn_fe_problem *p, const double *x,
                               const sn_output *output) {
-    if (!output || !output->frame) return SN_OK;
+    if (!m->fields) return SN_OK;
     sn_fe_measure_fill(m, p, x);
     return sn_fe_measure_emit(m, p, output);
 }
@@ -150,15 +157,16 @@ double sn_fe_measure_energy(const sn_fe_problem *p, const double *x) {
     const sn_fe_space *s = p->space;
     sn_fe_fault fault;
     double sum = 0.0;
-    for (int b = 0; b < s->batches; b++) {
+    for (int b = 0; b < s->batches && !isnan(sum); b++) {
         const sn_fe_points *v = &p->work->points;
         if (!sn_fe_points_at(s, p->materials, b, x, SN_FE_ENERGY, &p->work->points, &fault))
-            return (double)NAN;
-        for (int q = 0; q < s->element.points; q++)
+            sum = (double)NAN;
+        for (int q = 0; q < s->element.points && !isnan(sum); q++)
             for (int at = 0; at < s->batch_count[b]; at++)
-                sum += v->weight[q * s->batch_cells + at] * v->W[q * s->batch_cells + at];
+                if (sn_fe_cell_is_own(s->ranks, s->slot[b * s->batch_cells + at]))
+                    sum += v->weight[q * s->batch_cells + at] * v->W[q * s->batch_cells + at];
     }
-    return sum;
+    return sn_fe_sum(s->ranks, sum);
 }
 
 //---- history ------------------------------------------------------------------------------------
@@ -174,11 +182,9 @@ sn_status sn_fe_measure_row(sn_fe_measure *m, const sn_fe_problem *p, const doub
             for (int i = 0; i < 3; i++) to[i] += p->residual[3 * m->reaction[k][r] + i];
         if (p->c->probe[k].kind != SN_PROBE_POINT) continue;
         double shape[SN_FE_NODES];
-        int batch = m->point_cell[k] / s->batch_cells, at = m->point_cell[k] % s->batch_cells;
         sn_fe_cell_shape(s->element.nodes, m->point_weight[k], shape);
         for (int a = 0; a < s->element.nodes; a++)
-            for (int i = 0; i < 3; i++)
-                to[i] += shape[a] * x[3 * sn_fe_cell_block(s, batch, at, a) + i];
+            for (int i = 0; i < 3; i++) to[i] += shape[a] * x[3 * m->point_node[k][a] + i];
     }
     for (int k = 0; k < p->c->tool_count; k++)
         for (int i = 0; i < 3; i++) *to++ = p->boundary->tool_force[k][i];
@@ -198,7 +204,7 @@ static sn_status find_probes(const sn_fe_problem *p, sn_fe_measure *m) {
         int cell;
         sn_status status = sn_mesh_locate(c->mesh, probe->point, &cell, m->point_weight[k]);
         if (status != SN_OK) return sn_fail_within(status, "probe \"%s\"", probe->name);
-        m->point_cell[k] = sn_fe_space_place(p->space, cell);
+        sn_fe_cell_nodes(p->space, c->mesh, cell, m->point_node[k]);
     }
     return SN_OK;
 }
@@ -218,7 +224,7 @@ void sn_fe_measure_destroy(sn_fe_measure *m, const sn_case *c) {
     for (int k = 0; m->reaction && k < c->probe_count; k++) sn_free(m->reaction[k]);
     void *const parts[] = {m->displacement, m->pressure,       m->strain,     m->stress,
                            m->reference,    m->stretch,        m->energy,     m->row,
-                           m->reaction,     m->reaction_count, m->point_cell, m->point_weight,
+                           m->reaction,     m->reaction_count, m->point_node, m->point_weight,
                            m->fibre};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(m);
@@ -233,6 +239,7 @@ sn_status sn_fe_measure_create(const sn_fe_problem *p, const sn_record *history,
     sn_fe_measure *m = *out = sn_alloc(1, sizeof *m);
     if (!m) return SN_E_MEMORY;
     m->columns = history->series_count;
+    m->fields = fields;
     m->displacement = sn_alloc(3 * corners, sizeof *m->displacement);
     m->pressure = sn_alloc(corners, sizeof *m->pressure);
     m->strain = sn_alloc(6 * cells, sizeof *m->strain);
@@ -244,13 +251,14 @@ sn_status sn_fe_measure_create(const sn_fe_problem *p, const sn_record *history,
     m->row = sn_alloc((size_t)m->columns, sizeof *m->row);
     m->reaction = sn_alloc(probes, sizeof *m->reaction);
     m->reaction_count = sn_alloc(probes, sizeof *m->reaction_count);
-    m->point_cell = sn_alloc(probes, sizeof *m->point_cell);
+    m->point_node = sn_alloc(probes, sizeof *m->point_node);
     m->point_weight = sn_alloc(probes, sizeof *m->point_weight);
     if (!m->displacement || !m->pressure || !m->strain || !m->stress || !m->reference ||
         !m->stretch || !m->energy || !m->fibre || !m->row || !m->reaction || !m->reaction_count ||
-        !m->point_cell || !m->point_weight)
+        !m->point_node || !m->point_weight)
         goto fail;
     if (fields) fill_fibres(p, m->fibre);
+    if (fields) sn_fe_gather_cells(p->space->ranks, 3, m->fibre);
     SN_TRY_GOTO(status, find_probes(p, m));
     return SN_OK;
 fail:

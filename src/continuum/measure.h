@@ -19,11 +19,12 @@ typedef struct sn_fe_measure {
     double *stretch;      ///< principal stretches (cells x 3)
     double *energy;       ///< (cells)
     double *fibre;        ///< at rest                      (cells x 3)
+    bool fields;          ///< somebody wants them
     double *row;          ///< a row of the history
     int columns;
     int **reaction; ///< nodes of the surface of each reaction probe  (probes)
     int *reaction_count;
-    int *point_cell; ///< place (batch * cells + at) of each point probe    (probes)
+    int (*point_node)[SN_FE_NODES]; ///< nodes of the cell of each point probe (probes)
     double (*point_weight)[4];
 } sn_fe_measure;
 
@@ -35,7 +36,7 @@ sn_status sn_fe_measure_row(sn_fe_measure *m, const sn_fe_problem *p, const doub
                             sn_record *history);
 /// Computes the fields of a state.
 void sn_fe_measure_fill(sn_fe_measure *m, const sn_fe_problem *p, const double *x);
-/// Hands out the fields as they were computed last, at the problem's time.
+/// Hands out the fields as they were computed last, at the problem's time: on the first rank.
 sn_status sn_fe_measure_emit(sn_fe_measure *m, const sn_fe_problem *p, const sn_output *output);
 /// Computes the fields of the present state and hands them out.
 sn_status sn_fe_measure_frame(sn_fe_measure *m, const sn_fe_problem *p, const double *x,

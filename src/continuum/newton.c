@@ -21,7 +21,7 @@
 enum { HALVINGS = 6, STALLS = 3 };
 
 sn_status sn_fe_newton_init(sn_fe_newton *n, sn_fe_problem *problem, double tolerance) {
-    size_t dofs = (size_t)problem->space->dofs, rows = (size_t)problem->pattern->rows;
+    size_t dofs = (size_t)problem->space->dofs, rows = (size_t)problem->pattern->total;
     *n = (sn_fe_newton){.problem = problem, .tolerance = tolerance};
     n->trial = sn_alloc(dofs, sizeof *n->trial);
     n->increment = sn_alloc(dofs, sizeof *n->increment);
@@ -58,7 +58,7 @@ static sn_status find_increment(sn_fe_newton *n, const double *x, const sn_fe_ba
     sn_fe_problem_weigh(p, at);
     SN_TRY(sn_fe_solver_reduce(p->solver, lift ? LIFTED : reduction(n, at->error), n->right,
                                n->solution, good));
-    for (int k = 0; k < p->pattern->rows && *good; k++) *good = isfinite(n->solution[k]);
+    for (int k = 0; k < p->pattern->total && *good; k++) *good = isfinite(n->solution[k]);
     for (int d = 0; d < dofs && *good; d++)
         if (row[d] >= 0)
             n->increment[d] = n->solution[row[d]];

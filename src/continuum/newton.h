@@ -12,7 +12,7 @@ typedef struct sn_fe_newton {
     double tolerance;                   ///< of sn_fe_balance.error
     double *trial;                      ///< (dofs)
     double *increment;                  ///< (dofs)
-    double *right, *solution;           ///< (rows)
+    double *right, *solution;           ///< (total)
     double trace[SN_FE_ITERATIONS + 2]; ///< error after each iteration, the first the start's
 } sn_fe_newton;
 

@@ -197,7 +197,7 @@ bool sn_fe_points_at(const sn_fe_space *s, const sn_fe_materials *materials, int
     remember(m, past, what, out);
     if (m->splits > 1) add_fibres(m, past, what, out);
     volumes(s, m, past, batch, x, out);
-    add_volume(s, m, what, out);
+    if (!(what & SN_FE_UNPRESSED)) add_volume(s, m, what, out);
     if (what & SN_FE_ENERGY && !isinf(m->bulk))
         for (int n = 0; n < N; n++) {
             // K (J - 1), or the volume strain of the pressure

@@ -31,7 +31,8 @@ typedef struct sn_fe_points {
     double D[21 * SN_FE_POINTS];           ///< consistent tangent dS/de, Pa
 } sn_fe_points;
 
-enum { SN_FE_ENERGY = 1, SN_FE_TANGENT = 2 }; ///< what to compute beyond the stress
+/// What to compute beyond the stress; the last leaves out all that the unknown pressure does.
+enum { SN_FE_ENERGY = 1, SN_FE_TANGENT = 2, SN_FE_UNPRESSED = 4 };
 
 /// Where an evaluation failed.
 typedef struct sn_fe_fault {

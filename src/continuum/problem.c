@@ -27,6 +27,7 @@ static void integrate_pressures(sn_fe_problem *p) {
             for (int c = 0; c < s->batch_count[b]; c++)
                 p->flux_scale[node[k * width + c]] += 0.25 * s->volume[b * width + c];
     }
+    sn_fe_gather_corners(s, p->flux_scale);
 }
 
 void sn_fe_problem_destroy(sn_fe_problem *p) {
@@ -38,10 +39,50 @@ void sn_fe_problem_destroy(sn_fe_problem *p) {
     sn_fe_pattern_destroy(p->pattern);
     sn_fe_space_destroy(p->space);
     void *const parts[] = {p->work,     p->entry,  p->prescribed, p->residual,
-                           p->external, p->lifted, p->flux_scale};
+                           p->external, p->lifted, p->flux_scale, p->soft};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(p);
 }
+
+static sn_status alloc_vectors(sn_fe_problem *p, bool iterative) {
+    const sn_fe_space *s = p->space;
+    size_t dofs = (size_t)s->dofs, softs = iterative && s->element.mixed ? (size_t)s->corners : 0;
+    p->work = sn_alloc(1, sizeof *p->work);
+    p->entry = sn_alloc((size_t)p->pattern->row_start[p->pattern->rows], sizeof *p->entry);
+    p->prescribed = sn_alloc(3 * (size_t)s->nodes, sizeof *p->prescribed);
+    p->residual = sn_alloc(dofs, sizeof *p->residual);
+    p->external = sn_alloc(dofs, sizeof *p->external);
+    p->lifted = sn_alloc(dofs, sizeof *p->lifted);
+    p->flux_scale = sn_alloc((size_t)s->corners, sizeof *p->flux_scale);
+    if (softs) p->soft = sn_alloc(softs, sizeof *p->soft);
+    return p->work && p->entry && p->prescribed && p->residual && p->external && p->lifted &&
+                   p->flux_scale && (p->soft || !softs)
+               ? SN_OK
+               : SN_E_MEMORY;
+}
+
+// What each rank makes for itself, with what its own cells add to dead loads.
+static sn_status create_tissue(sn_fe_problem *p, double shortest) {
+    SN_TRY(sn_fe_materials_create(p->c, p->space, shortest, &p->materials));
+    return sn_fe_boundary_create(p->c, p->space, &p->boundary);
+}
+
+static sn_status create_system(sn_fe_problem *p) {
+    const sn_case *c = p->c;
+    bool dynamic = c->continuum.analysis == SN_ANALYSIS_DYNAMIC;
+    bool iterative = c->continuum.solver == SN_SOLVER_ITERATIVE;
+    if (!dynamic) { // inertia holds what the supports leave free
+        sn_fe_rigid_find(p->space);
+        SN_TRY(sn_fe_rigid_parts(p->space, c->mesh));
+        SN_TRY(sn_fe_rigid_hinges(p->space, c->mesh));
+        SN_TRY(sn_fe_rigid_check(p->space, c, p->boundary));
+    }
+    SN_TRY(sn_fe_pattern_create(p->space, iterative, &p->pattern));
+    if (dynamic) SN_TRY(sn_fe_inertia_create(c, p->space, p->pattern, &p->inertia));
+    return alloc_vectors(p, iterative);
+}
+
+static void assemble(void *problem, bool pressed);
 
 sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem **problem) {
     sn_status status = SN_OK;
@@ -49,35 +90,20 @@ sn_status sn_fe_problem_create(const sn_case *c, double shortest, sn_fe_problem 
     if (!p) return SN_E_MEMORY;
     p->c = c;
     SN_TRY_GOTO(status, sn_fe_space_create(c, &p->space));
-    SN_TRY_GOTO(status, sn_fe_materials_create(c, p->space, shortest, &p->materials));
-    SN_TRY_GOTO(status, sn_fe_boundary_create(c, p->space, &p->boundary));
-    bool dynamic = c->continuum.analysis == SN_ANALYSIS_DYNAMIC;
-    if (!dynamic) { // inertia holds what the supports leave free
-        sn_fe_rigid_find(p->space);
-        SN_TRY_GOTO(status, sn_fe_rigid_parts(p->space));
-        SN_TRY_GOTO(status, sn_fe_rigid_hinges(p->space, c->mesh));
-        SN_TRY_GOTO(status, sn_fe_rigid_check(p->space, c, p->boundary));
-    }
-    SN_TRY_GOTO(status, sn_fe_pattern_create(p->space, &p->pattern));
-    if (dynamic) SN_TRY_GOTO(status, sn_fe_inertia_create(c, p->space, p->pattern, &p->inertia));
-    size_t dofs = (size_t)p->space->dofs;
-    p->work = sn_alloc(1, sizeof *p->work);
-    p->entry = sn_alloc((size_t)p->pattern->row_start[p->pattern->rows], sizeof *p->entry);
-    p->prescribed = sn_alloc(3 * (size_t)p->space->nodes, sizeof *p->prescribed);
-    p->residual = sn_alloc(dofs, sizeof *p->residual);
-    p->external = sn_alloc(dofs, sizeof *p->external);
-    p->lifted = sn_alloc(dofs, sizeof *p->lifted);
-    p->flux_scale = sn_alloc((size_t)p->space->corners, sizeof *p->flux_scale);
-    status = SN_E_MEMORY;
-    if (!p->work || !p->entry || !p->prescribed || !p->residual || !p->external || !p->lifted ||
-        !p->flux_scale)
-        goto fail;
+    SN_TRY_GOTO(status, sn_fe_agree(p->space->ranks, create_tissue(p, shortest)));
+    if (p->boundary->gravity) sn_fe_gather_nodes(p->space, p->boundary->gravity);
+    SN_TRY_GOTO(status, sn_fe_agree(p->space->ranks, create_system(p)));
     p->least_reference = rounding_reference(p);
     integrate_pressures(p);
-    status = SN_OK;
-    if (p->pattern->rows > 0)
-        SN_TRY_GOTO(status,
-                    sn_fe_solver_create(p->pattern, p->entry, p->boundary->symmetric, &p->solver));
+    const sn_fe_solver_def def = {.space = p->space,
+                                  .pattern = p->pattern,
+                                  .value = p->entry,
+                                  .soft = p->soft,
+                                  .symmetric = p->boundary->symmetric,
+                                  .iterative = p->pattern->whole,
+                                  .assemble = assemble,
+                                  .context = p};
+    if (p->pattern->unknowns > 0) SN_TRY_GOTO(status, sn_fe_solver_create(&def, &p->solver));
     sn_fe_problem_begin(p, (sn_fe_level){0.0, 0.0, 0.0});
     return SN_OK;
 fail:
@@ -102,8 +128,7 @@ void sn_fe_problem_weigh(sn_fe_problem *p, const sn_fe_balance *balance) {
     double scale = 0.0;
     if (!p->space->element.mixed || !p->solver) return;
     for (int a = 0; a < p->space->corners; a++) scale += p->flux_scale[a] * p->flux_scale[a];
-    sn_fe_solver_weigh(p->solver, p->pattern->row[3 * p->space->nodes],
-                       force_reference(p, balance) / sqrt(scale));
+    sn_fe_solver_weigh(p->solver, force_reference(p, balance) / sqrt(scale));
 }
 
 // Reactions beyond this are of a state that stiffened out of all proportion on Newton's way:
@@ -132,7 +157,7 @@ static void measure(const sn_fe_problem *p, double inertia, sn_fe_balance *out) 
     out->volume = scale > 0.0 ? sqrt(flux / scale) : 0.0;
     out->error = fmax(out->force / force_reference(p, out), out->volume);
     out->sound = isfinite(out->error);
-    if (!out->sound) out->fault = (sn_fe_fault){.cell = s->slot[0], .J = (double)NAN};
+    if (!out->sound) out->fault = (sn_fe_fault){.cell = 0, .J = (double)NAN};
 }
 
 void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out) {
@@ -140,9 +165,15 @@ void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out
     *out = (sn_fe_balance){.error = (double)INFINITY};
     memset(p->residual, 0, (size_t)s->dofs * sizeof *p->residual);
     memset(p->external, 0, (size_t)s->dofs * sizeof *p->external);
-    for (int b = 0; b < s->batches; b++) {
-        if (!sn_fe_points_at(s, p->materials, b, x, 0, &p->work->points, &out->fault)) return;
-        sn_fe_cell_forces(s, b, p->work, p->residual);
+    out->fault.cell = s->cells;
+    for (int b = 0; b < s->batches && out->fault.cell == s->cells; b++)
+        if (sn_fe_points_at(s, p->materials, b, x, 0, &p->work->points, &out->fault))
+            sn_fe_cell_forces(s, b, p->work, p->residual);
+    int own = out->fault.cell;
+    sn_fe_gather_least(s, p->residual, &out->fault.cell);
+    if (out->fault.cell < s->cells) {
+        sn_fe_from_holder(s->ranks, out->fault.cell == own, &out->fault.J);
+        return;
     }
     sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external, NULL);
     for (int n = 0; n < s->dofs; n++) p->residual[n] -= p->external[n];
@@ -151,28 +182,48 @@ void sn_fe_problem_balance(sn_fe_problem *p, const double *x, sn_fe_balance *out
     measure(p, inertia, out);
 }
 
-void sn_fe_problem_stiffness(sn_fe_problem *p, const double *x, const double *lift) {
+static void assemble_cells(sn_fe_problem *p, unsigned what) {
     const sn_fe_space *s = p->space;
-    sn_fe_matrix matrix = {p->pattern, s, p->entry, lift, p->lifted};
+    sn_fe_matrix matrix = {p->pattern, s, p->entry, p->lift, p->lifted, p->soft};
     sn_fe_fault fault;
     memset(p->entry, 0, (size_t)p->pattern->row_start[p->pattern->rows] * sizeof *p->entry);
     memset(p->lifted, 0, (size_t)s->dofs * sizeof *p->lifted);
+    if (p->soft) memset(p->soft, 0, (size_t)s->corners * sizeof *p->soft);
+    for (int k = 0; k < p->pattern->held_count; k++) p->entry[p->pattern->held[k]] = 1.0;
     for (int b = 0; b < s->batches; b++) {
-        bool good = sn_fe_points_at(s, p->materials, b, x, SN_FE_TANGENT, &p->work->points, &fault);
+        bool good = sn_fe_points_at(s, p->materials, b, p->at, what, &p->work->points, &fault);
         SN_ASSERT(good);
         (void)good;
         sn_fe_cell_tangent(s, p->materials->material + s->batch_region[b], b, p->work, &matrix);
     }
 }
 
-void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift) {
+// The tangent of p->at; see sn_fe_solver_def.
+static void assemble(void *problem, bool pressed) {
+    sn_fe_problem *p = problem;
     const sn_fe_space *s = p->space;
-    sn_fe_matrix matrix = {p->pattern, s, p->entry, lift, p->lifted};
-    sn_fe_problem_stiffness(p, x, lift);
+    sn_fe_matrix matrix = {p->pattern, s, p->entry, p->lift, p->lifted, NULL};
+    assemble_cells(p, SN_FE_TANGENT | (pressed ? 0u : SN_FE_UNPRESSED));
+    if (p->cells_alone) return;
     if (p->inertia) sn_fe_inertia_tangent(p->inertia, p->pattern, p->entry);
     memset(p->external, 0, (size_t)s->dofs * sizeof *p->external);
-    sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, x, p->external,
+    sn_fe_boundary_apply(p->boundary, p->c, s, p->level.time, p->level.scale, p->at, p->external,
                          &matrix);
+}
+
+static void assemble_at(sn_fe_problem *p, const double *x, const double *lift, bool cells_alone) {
+    p->at = x;
+    p->lift = lift;
+    p->cells_alone = cells_alone;
+    assemble(p, true);
+}
+
+void sn_fe_problem_stiffness(sn_fe_problem *p, const double *x, const double *lift) {
+    assemble_at(p, x, lift, true);
+}
+
+void sn_fe_problem_tangent(sn_fe_problem *p, const double *x, const double *lift) {
+    assemble_at(p, x, lift, false);
 }
 
 void sn_fe_problem_commit(sn_fe_problem *p, const double *x, const sn_fe_balance *balance) {

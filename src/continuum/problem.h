@@ -35,12 +35,16 @@ typedef struct sn_fe_problem {
     sn_fe_solver *solver;
     sn_fe_work *work;
     sn_fe_level level;
-    double *entry;          ///< of the matrix                      (pattern->row_start[rows])
-    double *prescribed;     ///< at the level, m                    (3 x nodes)
-    double *residual;       ///< internal minus external forces     (dofs)
-    double *external;       ///< N                                  (dofs)
-    double *lifted;         ///< see sn_fe_matrix                   (dofs)
-    double *flux_scale;     ///< integrals of the pressures' shape functions, m3 (corners)
+    double *entry;      ///< of the matrix                      (pattern->row_start[rows])
+    double *prescribed; ///< at the level, m                    (3 x nodes)
+    double *residual;   ///< internal minus external forces     (dofs)
+    double *external;   ///< N                                  (dofs)
+    double *lifted;     ///< see sn_fe_matrix                   (dofs)
+    double *soft;       ///< see sn_fe_solver_def; NULL unless iterative and mixed (corners)
+    double *flux_scale; ///< integrals of the pressures' shape functions, m3 (corners)
+    const double *at;   ///< state of the last tangent (borrowed), with its `lift` and whether it
+    const double *lift; ///< was that of the cells alone: for sn_fe_solver_def.assemble
+    bool cells_alone;
     double reference;       ///< largest of the references of accepted steps, N
     double least_reference; ///< below it forces are rounding, N
 } sn_fe_problem;

@@ -148,17 +148,16 @@ static int part_of(int *part, int node) {
 }
 
 // The smallest node of its part for every node; returns how many parts there are.
-static int find_parts(const sn_fe_space *s, int *part) {
-    int parts = 0, nodes = s->element.nodes, width = s->batch_cells;
+static int find_parts(const sn_fe_space *s, const sn_mesh *mesh, int *part) {
+    int parts = 0, node[SN_FE_NODES];
     for (int a = 0; a < s->nodes; a++) part[a] = a;
-    for (int b = 0; b < s->batches; b++)
-        for (int at = 0; at < s->batch_count[b]; at++) {
-            const int *node = s->node + (size_t)b * (size_t)(nodes * width) + at;
-            for (int k = 1; k < nodes; k++) {
-                int one = part_of(part, node[0]), other = part_of(part, node[k * width]);
-                part[one > other ? one : other] = one > other ? other : one;
-            }
+    for (int c = 0; c < mesh->cell_count; c++) {
+        sn_fe_cell_nodes(s, mesh, c, node);
+        for (int k = 1; k < s->element.nodes; k++) {
+            int one = part_of(part, node[0]), other = part_of(part, node[k]);
+            part[one > other ? one : other] = one > other ? other : one;
         }
+    }
     for (int a = 0; a < s->nodes; a++) {
         part[a] = part_of(part, a);
         parts += part[a] == a;
@@ -166,11 +165,11 @@ static int find_parts(const sn_fe_space *s, int *part) {
     return parts;
 }
 
-sn_status sn_fe_rigid_parts(const sn_fe_space *s) {
+sn_status sn_fe_rigid_parts(const sn_fe_space *s, const sn_mesh *mesh) {
     int *part = sn_alloc((size_t)s->nodes, sizeof *part);
     if (!part) return SN_E_MEMORY;
     sn_status status = SN_OK;
-    int parts = find_parts(s, part);
+    int parts = find_parts(s, mesh, part);
     for (int a = 0; a < s->nodes && parts > 1 && status == SN_OK; a++) {
         motion basis[6];
         if (part[a] != a || seen_motions(s, part, a, basis) == 6) continue;

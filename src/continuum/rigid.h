@@ -14,7 +14,7 @@
 void sn_fe_rigid_find(sn_fe_space *s);
 /// Checks that every part of a body in several parts is held on its own.
 /// @return SN_OK, SN_E_DEFINITION, SN_E_MEMORY.
-sn_status sn_fe_rigid_parts(const sn_fe_space *s);
+sn_status sn_fe_rigid_parts(const sn_fe_space *s, const sn_mesh *mesh);
 /// Checks that no part of the body that shares only nodes or edges with the rest can turn on them;
 /// not where more than 32 such parts meet. @return SN_OK, SN_E_DEFINITION, SN_E_MEMORY.
 sn_status sn_fe_rigid_hinges(const sn_fe_space *s, const sn_mesh *mesh);

@@ -73,7 +73,8 @@ static void describe_body(const sn_fe_problem *p, sn_run_summary *s) {
     snprintf(s->model, sizeof s->model, "%s", p->space->element.name);
     s->nodes = p->space->nodes;
     s->cells = p->c->mesh->cell_count;
-    s->unknowns = p->pattern->rows;
+    s->unknowns = p->pattern->unknowns;
+    s->ranks = p->space->ranks->count;
     s->threads = 1;
     for (int r = 0; r < p->materials->count; r++) {
         const sn_fe_material *m = p->materials->material + r;
@@ -139,6 +140,14 @@ static void judge_steps(const sn_fe_march *m, sn_run_summary *s) {
     }
 }
 
+static void judge_solver(const sn_fe_solver *solver, sn_run_summary *s) {
+    sn_fe_solver_work work = solver ? sn_fe_solver_done(solver) : (sn_fe_solver_work){0};
+    if (work.rescues == 0 || s->note[0]) return;
+    snprintf(s->note, sizeof s->note,
+             "solver: iterative left %d of %d linear systems to the direct solver%s", work.rescues,
+             work.systems, work.rescues < SN_FE_RESCUES ? "" : ", and all that followed");
+}
+
 static void sum_up(sn_fe_march *m, sn_run_summary *s) {
     describe_body(m->problem, s);
     balance_energy(m, s);
@@ -157,6 +166,7 @@ static void sum_up(sn_fe_march *m, sn_run_summary *s) {
                  "%d of %ld steps were accepted at rounding level, above the tolerance of %.3g",
                  m->rounded, s->steps, m->c->continuum.tolerance);
     judge_steps(m, s);
+    judge_solver(m->problem->solver, s);
     if (m->problem->materials->remembers && !s->note[0])
         snprintf(s->note, sizeof s->note,
                  "elastic_J is the energy of the last strain if it were reached at once; a relaxed "
@@ -183,6 +193,7 @@ sn_status sn_continuum_resume(const sn_case *c, const sn_output *output, const s
     bool linear = c->continuum.analysis == SN_ANALYSIS_LINEAR;
     if (status == SN_OK) status = linear ? sn_fe_linear_go(&march) : sn_fe_march_go(&march);
     if (status == SN_OK) sum_up(&march, summary);
+    status = sn_fe_settle(status);
     sn_fe_march_free(&march);
     return status;
 }

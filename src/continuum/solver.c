@@ -1,35 +1,36 @@
-// The linear solver: MUMPS through PETSc.
+// The linear solver: MUMPS or multigrid through PETSc.
 // SPDX-License-Identifier: Apache-2.0
 #include "continuum/solver.h"
 
 #include <math.h>
-#include <petscksp.h>
-#include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
-// MPI, which PETSc starts, does not give all its memory back at the end; that would hide our own
-// leaks from the leak checker.
-#ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/lsan_interface.h>
-#define LEAKS_OF_OTHERS(call) (__lsan_disable(), (call), __lsan_enable())
-#else
-#define LEAKS_OF_OTHERS(call) ((void)(call))
-#endif
+#include "continuum/multigrid.h"
+#include "continuum/petsc.h"
 
 struct sn_fe_solver {
+    sn_fe_solver_def def;
+    MPI_Comm comm;
     Mat matrix, factor;
+    //---- several ranks and a small system: all rows, on each of them
+    int *entries; // of each rank, then where they begin
+    int *row_start, *column;
+    double *value;              // NULL otherwise
+    sn_fe_multigrid *multigrid; // instead of the factor; NULL where direct
     Vec b, x;
-    bool symmetric;
-    int room; // MUMPS' workspace in per cent over its estimate
+    int rows;         // of these vectors
+    int *size, *from; // rows of each rank, for the solution; NULL on one
+    int room;         // MUMPS' workspace in per cent over its estimate
     //---- reuse of the factors
     KSP gmres;       // NULL until it is needed first
     Vec scaled;      // what the factors are applied to
     Mat weighted;    // the matrix with weighted rows
-    int first;       // first weighted row
-    double weight;   // of the rows from `first` on
+    double weight;   // of the pressures' rows
     bool rough;      // the factors are approximate when they are made
     bool factored;   // there are factors, of this matrix or an older one
     double price;    // of a factorisation, in applications of the factors
+    double fresh;    // applications a digit with a new hierarchy
     double spent;    // since they were made, with their price
     double digits;   // gained for that
     double marginal; // applications a digit in the last solution
@@ -37,57 +38,17 @@ struct sn_fe_solver {
 };
 
 enum { ROOM_FIRST = 40, ROOM_MOST = 2000, LARGE = 2000, LARGE_ROUGH = 20000, BASIS_MOST = 60 };
-#define ROUGHNESS 1e-3      // relative error of the blocks of low rank
+enum { BASIS_LARGE = 100, CYCLES_MOST = 500 }; // of multigrid
+#define HIERARCHY 10.0                         // what a hierarchy of multigrid costs, in cycles
+#define ROUGHNESS 1e-3                         // relative error of the blocks of low rank
 #define FLOPS_AN_ENTRY 50.0 // that a factorisation does while one entry of the factors is applied
-
-static sn_status petsc_failed(PetscErrorCode code, const char *what) {
-    const char *text = NULL;
-    PetscErrorMessage(code, &text, NULL);
-    return sn_fail(code == PETSC_ERR_MEM ? SN_E_MEMORY : SN_E_SOLVER, "%s: PETSc error %d: %s",
-                   what, (int)code, text ? text : "unknown");
-}
-
-#define TRY_PETSC(call, what)                                                                      \
-    do {                                                                                           \
-        PetscErrorCode try_code_ = (call);                                                         \
-        if (try_code_) {                                                                           \
-            status = petsc_failed(try_code_, (what));                                              \
-            goto fail;                                                                             \
-        }                                                                                          \
-    } while (0)
-
-// OpenBLAS starts a thread a core, which on the small fronts of a factorisation mostly wait for
-// each other (a third of the processor time of an indentation went into that) and fight with other
-// ranks. Weak: another BLAS has no such function.
-void openblas_set_num_threads(int threads) __attribute__((weak));
-
-static void finish_petsc(void) {
-    LEAKS_OF_OTHERS(PetscFinalize());
-}
-
-static sn_status start_petsc(void) {
-    sn_status status = SN_OK;
-    PetscBool started = PETSC_FALSE, ended = PETSC_FALSE;
-    TRY_PETSC(PetscInitialized(&started), "start");
-    TRY_PETSC(PetscFinalized(&ended), "start");
-    if (ended) return sn_fail(SN_E_SOLVER, "PETSc was shut down in this process");
-    if (started) return SN_OK;
-    if (openblas_set_num_threads && !getenv("OPENBLAS_NUM_THREADS")) openblas_set_num_threads(1);
-    TRY_PETSC(PetscOptionsSetValue(NULL, "-no_signal_handler", "true"), "start");
-    PetscErrorCode code;
-    LEAKS_OF_OTHERS(code = PetscInitializeNoArguments());
-    TRY_PETSC(code, "start");
-    atexit(finish_petsc);
-fail:
-    return status;
-}
 
 static sn_status analyse(sn_fe_solver *s) {
     sn_status status = SN_OK;
     MatFactorInfo info;
     TRY_PETSC(MatFactorInfoInitialize(&info), "analysis");
     TRY_PETSC(MatGetFactor(s->matrix, MATSOLVERMUMPS,
-                           s->symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, &s->factor),
+                           s->def.symmetric ? MAT_FACTOR_CHOLESKY : MAT_FACTOR_LU, &s->factor),
               "MUMPS (is PETSc built with it?)");
     TRY_PETSC(MatMumpsSetIcntl(s->factor, 14, s->room), "MUMPS workspace");
     PetscInt rows;
@@ -99,7 +60,7 @@ static sn_status analyse(sn_fe_solver *s) {
         TRY_PETSC(MatMumpsSetIcntl(s->factor, 35, 1), "MUMPS low rank");
         TRY_PETSC(MatMumpsSetCntl(s->factor, 7, ROUGHNESS), "MUMPS low rank");
     }
-    if (s->symmetric)
+    if (s->def.symmetric)
         TRY_PETSC(MatCholeskyFactorSymbolic(s->factor, s->matrix, NULL, &info), "analysis");
     else
         TRY_PETSC(MatLUFactorSymbolic(s->factor, s->matrix, NULL, NULL, &info), "analysis");
@@ -110,35 +71,105 @@ fail:
 void sn_fe_solver_destroy(sn_fe_solver *s) {
     if (!s) return;
     KSPDestroy(&s->gmres);
+    sn_fe_multigrid_destroy(s->multigrid);
     MatDestroy(&s->weighted);
     VecDestroy(&s->scaled);
     MatDestroy(&s->factor);
     MatDestroy(&s->matrix);
     VecDestroy(&s->b);
     VecDestroy(&s->x);
+    void *const parts[] = {s->size, s->from, s->entries, s->row_start, s->column, s->value};
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
     sn_free(s);
 }
 
-sn_status sn_fe_solver_create(const sn_fe_pattern *p, double *value, bool symmetric,
-                              sn_fe_solver **solver) {
+// Gives the rows of each rank to all.
+static void exchange(const sn_fe_solver *s, double *v) {
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, v, s->size, s->from, MPI_DOUBLE,
+                   PETSC_COMM_WORLD);
+}
+
+static sn_status list_rows(sn_fe_solver *s) {
+    const sn_fe_pattern *p = s->def.pattern;
+    size_t ranks = (size_t)s->def.space->ranks->count;
+    s->size = sn_alloc(ranks, sizeof *s->size);
+    s->from = sn_alloc(ranks, sizeof *s->from);
+    if (!s->size || !s->from) return SN_E_MEMORY;
+    MPI_Allgather(&p->rows, 1, MPI_INT, s->size, 1, MPI_INT, PETSC_COMM_WORLD);
+    MPI_Allgather(&p->first, 1, MPI_INT, s->from, 1, MPI_INT, PETSC_COMM_WORLD);
+    return SN_OK;
+}
+
+// The compressed rows of all ranks, one behind the other, for a matrix that each has for itself.
+static sn_status join_rows(sn_fe_solver *s) {
+    const sn_fe_pattern *p = s->def.pattern;
+    int ranks = s->def.space->ranks->count, own = p->row_start[p->rows], entries = 0;
+    s->entries = sn_alloc(2 * (size_t)ranks, sizeof *s->entries);
+    s->row_start = sn_alloc((size_t)p->total + 1, sizeof *s->row_start);
+    if (!s->entries || !s->row_start) return SN_E_MEMORY;
+    MPI_Allgather(&own, 1, MPI_INT, s->entries, 1, MPI_INT, PETSC_COMM_WORLD);
+    for (int r = 0; r < ranks; entries += s->entries[r++]) s->entries[ranks + r] = entries;
+    s->column = sn_alloc((size_t)entries, sizeof *s->column);
+    s->value = sn_alloc((size_t)entries, sizeof *s->value);
+    if (!s->column || !s->value) return SN_E_MEMORY;
+    MPI_Allgatherv(p->column, own, MPI_INT, s->column, s->entries, s->entries + ranks, MPI_INT,
+                   PETSC_COMM_WORLD);
+    for (int r = 0; r < p->rows; r++) s->row_start[p->first + r] = p->row_start[r];
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, s->row_start, s->size, s->from, MPI_INT,
+                   PETSC_COMM_WORLD);
+    for (int r = 0; r < ranks; r++)
+        for (int k = s->from[r]; k < s->from[r] + s->size[r]; k++)
+            s->row_start[k] += s->entries[ranks + r];
+    s->row_start[p->total] = entries;
+    return SN_OK;
+}
+
+static sn_status create_matrix(sn_fe_solver *s) {
+    sn_status status = SN_OK;
+    const sn_fe_pattern *p = s->def.pattern;
+    bool several = s->def.space->ranks->count > 1;
+    bool whole = several && p->total <= LARGE && !s->def.iterative;
+    s->comm = several && !whole ? PETSC_COMM_WORLD : PETSC_COMM_SELF;
+    s->rows = several && !whole ? p->rows : p->total;
+    if (several) SN_TRY(list_rows(s));
+    if (whole) SN_TRY(join_rows(s));
+    if (several && !whole)
+        TRY_PETSC(MatCreateMPIAIJWithArrays(s->comm, p->rows, p->rows, p->total, p->total,
+                                            p->row_start, p->column, s->def.value, &s->matrix),
+                  "matrix");
+    else
+        TRY_PETSC(MatCreateSeqAIJWithArrays(
+                      s->comm, s->rows, s->rows, whole ? s->row_start : p->row_start,
+                      whole ? s->column : p->column, whole ? s->value : s->def.value, &s->matrix),
+                  "matrix");
+    if (s->def.symmetric) TRY_PETSC(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE), "matrix");
+    for (int k = 0; k < 2; k++) {
+        Vec *v = k ? &s->x : &s->b;
+        if (s->comm != PETSC_COMM_SELF)
+            TRY_PETSC(VecCreateMPIWithArray(s->comm, 1, s->rows, p->total, NULL, v), "vector");
+        else
+            TRY_PETSC(VecCreateSeqWithArray(s->comm, 1, s->rows, NULL, v), "vector");
+    }
+fail:
+    return status;
+}
+
+sn_status sn_fe_solver_create(const sn_fe_solver_def *def, sn_fe_solver **solver) {
     sn_status status = SN_OK;
     *solver = NULL;
-    SN_TRY(start_petsc());
+    SN_TRY(sn_fe_petsc_start());
     sn_fe_solver *s = sn_alloc(1, sizeof *s);
     if (!s) return SN_E_MEMORY;
-    s->symmetric = symmetric;
+    s->def = *def;
     s->room = ROOM_FIRST;
-    s->rough = p->rows > LARGE_ROUGH;
-    s->first = p->rows;
+    s->rough = def->pattern->total > LARGE_ROUGH;
     s->weight = 1.0;
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-    TRY_PETSC(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, p->rows, p->rows, p->row_start, p->column,
-                                        value, &s->matrix),
-              "matrix");
-    if (symmetric) TRY_PETSC(MatSetOption(s->matrix, MAT_SYMMETRIC, PETSC_TRUE), "matrix");
-    TRY_PETSC(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, p->rows, NULL, &s->b), "vector");
-    TRY_PETSC(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, p->rows, NULL, &s->x), "vector");
-    SN_TRY_GOTO(status, analyse(s));
+    SN_TRY_GOTO(status, create_matrix(s));
+    if (def->iterative)
+        SN_TRY_GOTO(status, sn_fe_multigrid_create(def, s->matrix, &s->multigrid));
+    else
+        SN_TRY_GOTO(status, analyse(s));
     PetscPopErrorHandler();
     *solver = s;
     return SN_OK;
@@ -148,18 +179,54 @@ fail:
     return status;
 }
 
-sn_status sn_fe_solver_factor(sn_fe_solver *s, bool *good) {
+// Hands the entries to PETSc as they are now.
+static sn_status take_values(sn_fe_solver *s) {
+    sn_status status = SN_OK;
+    PetscScalar *value;
+    if (s->value)
+        MPI_Allgatherv(s->def.value, s->entries[s->def.space->ranks->rank], MPI_DOUBLE, s->value,
+                       s->entries, s->entries + s->def.space->ranks->count, MPI_DOUBLE,
+                       PETSC_COMM_WORLD);
+    if (s->size && !s->value) {
+        TRY_PETSC(MatUpdateMPIAIJWithArray(s->matrix, s->def.value), "matrix");
+    } else { // handing the array back tells PETSc that it has changed
+        TRY_PETSC(MatSeqAIJGetArray(s->matrix, &value), "matrix");
+        TRY_PETSC(MatSeqAIJRestoreArray(s->matrix, &value), "matrix");
+    }
+fail:
+    return status;
+}
+
+// Lends the vectors the rows of this rank; `lent` takes them back, and gives the solution to all.
+static sn_status lend(sn_fe_solver *s, double *b, double *x) {
+    sn_status status = SN_OK;
+    int first = s->value ? 0 : s->def.pattern->first;
+    if (s->value) exchange(s, b);
+    TRY_PETSC(VecPlaceArray(s->b, b + first), "solution");
+    TRY_PETSC(VecPlaceArray(s->x, x + first), "solution");
+fail:
+    return status;
+}
+
+static sn_status lent(sn_fe_solver *s, double *x) {
+    sn_status status = SN_OK;
+    TRY_PETSC(VecResetArray(s->b), "solution");
+    TRY_PETSC(VecResetArray(s->x), "solution");
+    if (s->size && !s->value) exchange(s, x);
+fail:
+    return status;
+}
+
+//---- factors ------------------------------------------------------------------------------------
+
+static sn_status factor(sn_fe_solver *s, bool *good) {
     sn_status status = SN_OK;
     MatFactorInfo info;
     MatFactorError error = MAT_FACTOR_NOERROR;
     *good = false;
-    PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     TRY_PETSC(MatFactorInfoInitialize(&info), "factorisation");
-    PetscScalar *value; // handing the array back tells PETSc that it has changed
-    TRY_PETSC(MatSeqAIJGetArray(s->matrix, &value), "factorisation");
-    TRY_PETSC(MatSeqAIJRestoreArray(s->matrix, &value), "factorisation");
     for (;;) {
-        if (s->symmetric)
+        if (s->def.symmetric)
             TRY_PETSC(MatCholeskyFactorNumeric(s->factor, s->matrix, &info), "factorisation");
         else
             TRY_PETSC(MatLUFactorNumeric(s->factor, s->matrix, &info), "factorisation");
@@ -172,22 +239,38 @@ sn_status sn_fe_solver_factor(sn_fe_solver *s, bool *good) {
     if (error == MAT_FACTOR_OUTMEMORY)
         status = sn_fail(SN_E_MEMORY, "MUMPS ran out of memory in the factorisation");
     *good = error == MAT_FACTOR_NOERROR;
+fail:
+    return status;
+}
+
+sn_status sn_fe_solver_factor(sn_fe_solver *s, bool *good) {
+    sn_status status = SN_OK;
+    PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+    if (s->multigrid && s->def.soft) s->def.assemble(s->def.context, false);
+    SN_TRY_GOTO(status, take_values(s));
+    if (s->multigrid)
+        SN_TRY_GOTO(status, sn_fe_multigrid_renew(s->multigrid, good));
+    else
+        SN_TRY_GOTO(status, factor(s, good));
     s->factored = *good;
     s->work.factorisations++;
+    if (!s->multigrid || !s->def.soft) goto fail;
+    s->def.assemble(s->def.context, true);
+    SN_TRY_GOTO(status, take_values(s));
+    SN_TRY_GOTO(status, sn_fe_multigrid_couple(s->multigrid));
 fail:
     PetscPopErrorHandler();
     return status;
 }
 
-sn_status sn_fe_solver_solve(sn_fe_solver *s, double *b, double *x) {
+// By the present factors.
+static sn_status apply(sn_fe_solver *s, double *b, double *x) {
     sn_status status = SN_OK;
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
-    TRY_PETSC(VecPlaceArray(s->b, b), "solution");
-    TRY_PETSC(VecPlaceArray(s->x, x), "solution");
+    SN_TRY_GOTO(status, lend(s, b, x));
     TRY_PETSC(MatSolve(s->factor, s->b, s->x), "solution");
     s->work.applications++;
-    TRY_PETSC(VecResetArray(s->b), "solution");
-    TRY_PETSC(VecResetArray(s->x), "solution");
+    SN_TRY_GOTO(status, lent(s, x));
 fail:
     PetscPopErrorHandler();
     return status;
@@ -195,8 +278,7 @@ fail:
 
 //---- old factors as a preconditioner ------------------------------------------------------------
 
-void sn_fe_solver_weigh(sn_fe_solver *s, int first, double weight) {
-    s->first = first;
+void sn_fe_solver_weigh(sn_fe_solver *s, double weight) {
     s->weight = weight;
 }
 
@@ -210,11 +292,11 @@ sn_fe_solver_work sn_fe_solver_done(const sn_fe_solver *s) {
 }
 
 static PetscErrorCode scale_rows(const sn_fe_solver *s, double by, Vec v) {
+    const sn_fe_pattern *p = s->def.pattern;
     PetscScalar *value;
-    PetscInt rows;
-    PetscCall(VecGetLocalSize(v, &rows));
     PetscCall(VecGetArray(v, &value));
-    for (PetscInt k = s->first; k < rows; k++) value[k] *= by;
+    for (int k = p->pressures; k < p->rows && !s->value; k++) value[k] *= by;
+    for (int b = s->def.space->nodes; b < p->blocks && s->value; b++) value[p->block_row[b]] *= by;
     PetscCall(VecRestoreArray(v, &value));
     return 0;
 }
@@ -231,7 +313,10 @@ static PetscErrorCode apply_factors(PC pc, Vec y, Vec x) {
     PetscCall(PCShellGetContext(pc, &s));
     PetscCall(VecCopy(y, s->scaled));
     PetscCall(scale_rows(s, 1.0 / s->weight, s->scaled));
-    PetscCall(MatSolve(s->factor, s->scaled, x));
+    if (s->multigrid)
+        PetscCall(sn_fe_multigrid_apply(s->multigrid, s->scaled, x));
+    else
+        PetscCall(MatSolve(s->factor, s->scaled, x));
     s->work.applications++;
     return 0;
 }
@@ -240,15 +325,14 @@ static PetscErrorCode apply_factors(PC pc, Vec y, Vec x) {
 static sn_status create_gmres(sn_fe_solver *s) {
     sn_status status = SN_OK;
     PC pc;
-    PetscInt rows;
-    TRY_PETSC(MatGetSize(s->matrix, &rows, NULL), "GMRES");
-    TRY_PETSC(MatCreateShell(PETSC_COMM_SELF, rows, rows, rows, rows, s, &s->weighted), "GMRES");
+    PetscInt rows = s->rows, total = s->def.pattern->total;
+    TRY_PETSC(MatCreateShell(s->comm, rows, rows, total, total, s, &s->weighted), "GMRES");
     TRY_PETSC(MatShellSetOperation(s->weighted, MATOP_MULT, (void (*)(void))apply_weighted),
               "GMRES");
     TRY_PETSC(MatCreateVecs(s->matrix, &s->scaled, NULL), "GMRES");
-    TRY_PETSC(KSPCreate(PETSC_COMM_SELF, &s->gmres), "GMRES");
+    TRY_PETSC(KSPCreate(s->comm, &s->gmres), "GMRES");
     TRY_PETSC(KSPSetType(s->gmres, KSPGMRES), "GMRES");
-    TRY_PETSC(KSPGMRESSetRestart(s->gmres, BASIS_MOST), "GMRES");
+    TRY_PETSC(KSPGMRESSetRestart(s->gmres, s->multigrid ? BASIS_LARGE : BASIS_MOST), "GMRES");
     TRY_PETSC(KSPSetPCSide(s->gmres, PC_RIGHT), "GMRES");
     TRY_PETSC(KSPSetNormType(s->gmres, KSP_NORM_UNPRECONDITIONED), "GMRES");
     TRY_PETSC(KSPSetOperators(s->gmres, s->weighted, s->weighted), "GMRES");
@@ -260,23 +344,22 @@ fail:
     return status;
 }
 
-// *done where the old factors did it within their limit.
-static sn_status iterate(sn_fe_solver *s, double reduction, double *b, double *x, bool *done) {
+// *done where the preconditioner did it within `most` applications.
+static sn_status iterate(sn_fe_solver *s, double reduction, int most, double *b, double *x,
+                         bool *done) {
     sn_status status = SN_OK;
     KSPConvergedReason reason;
-    PetscInt count, most = (PetscInt)fmin(ceil(s->price), BASIS_MOST);
+    PetscInt count;
     double digits = fmax(-log10(reduction), 0.5);
     *done = false;
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     if (!s->gmres) SN_TRY_GOTO(status, create_gmres(s));
     TRY_PETSC(KSPSetTolerances(s->gmres, reduction, 0.0, PETSC_DEFAULT, most), "GMRES");
-    TRY_PETSC(VecPlaceArray(s->b, b), "GMRES");
-    TRY_PETSC(VecPlaceArray(s->x, x), "GMRES");
+    SN_TRY_GOTO(status, lend(s, b, x));
     TRY_PETSC(scale_rows(s, s->weight, s->b), "GMRES");
     TRY_PETSC(KSPSolve(s->gmres, s->b, s->x), "GMRES");
     TRY_PETSC(scale_rows(s, 1.0 / s->weight, s->b), "GMRES");
-    TRY_PETSC(VecResetArray(s->b), "GMRES");
-    TRY_PETSC(VecResetArray(s->x), "GMRES");
+    SN_TRY_GOTO(status, lent(s, x));
     TRY_PETSC(KSPGetConvergedReason(s->gmres, &reason), "GMRES");
     TRY_PETSC(KSPGetIterationNumber(s->gmres, &count), "GMRES");
     *done = reason > 0;
@@ -317,11 +400,12 @@ fail:
     return status;
 }
 
-static sn_status reduce(sn_fe_solver *s, double reduction, double *b, double *x, bool *good) {
+static sn_status reduce_by_factors(sn_fe_solver *s, double reduction, double *b, double *x,
+                                   bool *good) {
     bool done = false;
     *good = true;
     if (s->factored && s->marginal * s->digits <= s->spent)
-        SN_TRY(iterate(s, reduction, b, x, &done));
+        SN_TRY(iterate(s, reduction, (int)fmin(ceil(s->price), BASIS_MOST), b, x, &done));
     if (done) return SN_OK;
     SN_TRY(sn_fe_solver_factor(s, good));
     if (!*good) return SN_OK;
@@ -329,14 +413,64 @@ static sn_status reduce(sn_fe_solver *s, double reduction, double *b, double *x,
     s->digits = s->marginal = 0.0;
     s->spent = s->price;
     if (s->rough) {
-        SN_TRY(iterate(s, reduction, b, x, &done));
+        SN_TRY(iterate(s, reduction, (int)fmin(ceil(s->price), BASIS_MOST), b, x, &done));
         if (done) return SN_OK;
         SN_TRY(refine(s, good)); // too ill-conditioned for that
         if (!*good) return SN_OK;
     }
     s->digits = fmax(-log10(reduction), 0.5);
     s->spent += 1.0;
-    return sn_fe_solver_solve(s, b, x);
+    return apply(s, b, x);
+}
+
+//---- multigrid ----------------------------------------------------------------------------------
+
+// What multigrid could not do: factors for this system, or for all that come.
+static sn_status rescue(sn_fe_solver *s, double reduction, double *b, double *x, bool *good) {
+    sn_status status = SN_OK;
+    sn_fe_multigrid *multigrid = s->multigrid;
+    s->work.rescues++;
+    s->multigrid = NULL;
+    s->factored = false;
+    if (!s->factor) {
+        PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
+        status = analyse(s);
+        PetscPopErrorHandler();
+    }
+    if (status == SN_OK) status = reduce_by_factors(s, reduction, b, x, good);
+    if (s->work.rescues < SN_FE_RESCUES) {
+        s->multigrid = multigrid;
+        s->factored = false;
+        MatDestroy(&s->factor);
+    } else {
+        sn_fe_multigrid_destroy(multigrid);
+    }
+    return status;
+}
+
+static sn_status reduce_by_multigrid(sn_fe_solver *s, double reduction, double *b, double *x,
+                                     bool *good) {
+    bool done = false;
+    double digits = fmax(-log10(reduction), 0.5);
+    *good = true;
+    if (s->factored && s->marginal * s->digits <= s->spent) {
+        int most = (int)ceil(2.0 * s->fresh * digits + HIERARCHY);
+        SN_TRY(iterate(s, reduction, most, b, x, &done));
+    }
+    if (done) return SN_OK;
+    SN_TRY(sn_fe_solver_factor(s, good));
+    s->digits = s->marginal = 0.0;
+    s->spent = HIERARCHY;
+    if (*good) SN_TRY(iterate(s, reduction, CYCLES_MOST, b, x, &done));
+    s->fresh = s->marginal;
+    return done ? SN_OK : rescue(s, reduction, b, x, good);
+}
+
+static sn_status reduce(sn_fe_solver *s, double reduction, double *b, double *x, bool *good) {
+    SN_TRY(take_values(s));
+    s->work.systems++;
+    return s->multigrid ? reduce_by_multigrid(s, reduction, b, x, good)
+                        : reduce_by_factors(s, reduction, b, x, good);
 }
 
 sn_status sn_fe_solver_reduce(sn_fe_solver *s, double reduction, double *b, double *x, bool *good) {
@@ -344,4 +478,12 @@ sn_status sn_fe_solver_reduce(sn_fe_solver *s, double reduction, double *b, doub
     sn_status status = reduce(s, reduction, b, x, good);
     s->work.seconds += (double)(clock() - start) / CLOCKS_PER_SEC;
     return status;
+}
+
+sn_status sn_fe_solver_solve(sn_fe_solver *s, double *b, double *x) {
+    bool good = true;
+    if (!s->multigrid) return apply(s, b, x);
+    SN_TRY(sn_fe_solver_reduce(s, SN_FE_EXACT, b, x, &good));
+    for (int k = 0; k < s->def.pattern->total && !good; k++) x[k] = (double)NAN;
+    return SN_OK;
 }

@@ -21,10 +21,19 @@ int sn_fe_space_midside(const sn_fe_space *s, int a, int b) {
     return s->corners + low;
 }
 
+void sn_fe_cell_nodes(const sn_fe_space *s, const sn_mesh *mesh, int cell, int *node) {
+    const int *corner = mesh->cell + 4 * cell;
+    for (int a = 0; a < 4; a++) node[a] = corner[a];
+    for (int a = 4; a < s->element.nodes; a++)
+        node[a] = sn_fe_space_midside(s, corner[sn_fe_cell_edge[a - 4][0]],
+                                      corner[sn_fe_cell_edge[a - 4][1]]);
+}
+
 //---- nodes --------------------------------------------------------------------------------------
 
 static sn_status make_nodes(sn_fe_space *s, const sn_mesh *mesh) {
     s->corners = s->nodes = mesh->node_count;
+    s->cells = mesh->cell_count;
     if (s->element.nodes == 10) {
         SN_TRY(sn_mesh_edges(mesh, &s->edge, &s->edge_count));
         s->edge_at = sn_alloc((size_t)s->corners + 1, sizeof *s->edge_at);
@@ -83,11 +92,9 @@ static void place_cell(sn_fe_space *s, const sn_mesh *mesh, const double *field,
             s->gradient[((size_t)batch * 12 + (size_t)(3 * k + i)) * (size_t)width + (size_t)at] =
                 g[k][i];
     int *node = s->node + (size_t)batch * (size_t)(s->element.nodes * width);
-    const int *corner = mesh->cell + 4 * cell;
-    for (int a = 0; a < 4; a++) node[a * width + at] = corner[a];
-    for (int a = 4; a < s->element.nodes; a++)
-        node[a * width + at] = sn_fe_space_midside(s, corner[sn_fe_cell_edge[a - 4][0]],
-                                                   corner[sn_fe_cell_edge[a - 4][1]]);
+    int of[SN_FE_NODES];
+    sn_fe_cell_nodes(s, mesh, cell, of);
+    for (int a = 0; a < s->element.nodes; a++) node[a * width + at] = of[a];
 }
 
 static sn_status alloc_batches(sn_fe_space *s, bool turned) {
@@ -110,7 +117,8 @@ static sn_status make_batches(sn_fe_space *s, const sn_mesh *mesh, const double 
     int *open = sn_alloc((size_t)mesh->region_count, sizeof *open); // batch being filled
     sn_status status = size && open ? SN_OK : SN_E_MEMORY;
     if (status != SN_OK) goto fail;
-    for (int c = 0; c < mesh->cell_count; c++) size[mesh->region[c]]++;
+    for (int c = 0; c < mesh->cell_count; c++)
+        size[mesh->region[c]] += sn_fe_cell_is_near(s->ranks, c);
     for (int r = 0; r < mesh->region_count; r++) {
         open[r] = s->batches;
         s->batches += (size[r] + width - 1) / width;
@@ -118,6 +126,7 @@ static sn_status make_batches(sn_fe_space *s, const sn_mesh *mesh, const double 
     SN_TRY_GOTO(status, alloc_batches(s, field != NULL));
     for (int c = 0; c < mesh->cell_count; c++) {
         int region = mesh->region[c], batch = open[region];
+        if (!sn_fe_cell_is_near(s->ranks, c)) continue;
         s->batch_region[batch] = region;
         place_cell(s, mesh, field, batch, s->batch_count[batch], c);
         if (++s->batch_count[batch] == width) open[region]++;
@@ -244,6 +253,7 @@ void sn_fe_space_destroy(sn_fe_space *s) {
                            s->batch_count, s->slot,  s->node,    s->gradient,
                            s->volume,      s->fixed, s->turned};
     for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) sn_free(parts[k]);
+    sn_fe_ranks_destroy(s->ranks);
     sn_free(s);
 }
 
@@ -256,7 +266,8 @@ sn_status sn_fe_space_create(const sn_case *c, sn_fe_space **space) {
     for (int r = 0; r < c->mesh->region_count; r++) s->rotated |= c->tissue[r].law->fibres;
     SN_TRY_GOTO(status, sn_case_axes_field(c, s->axes, &field));
     SN_TRY_GOTO(status, make_nodes(s, c->mesh));
-    SN_TRY_GOTO(status, make_batches(s, c->mesh, field));
+    SN_TRY_GOTO(status, sn_fe_ranks_create(c->mesh, s, &s->ranks));
+    SN_TRY_GOTO(status, sn_fe_agree(s->ranks, make_batches(s, c->mesh, field)));
     SN_TRY_GOTO(status, make_fixed(s, c));
     sn_free(field);
     return SN_OK;
@@ -265,12 +276,4 @@ fail:
     sn_fe_space_destroy(s);
     *space = NULL;
     return status;
-}
-
-int sn_fe_space_place(const sn_fe_space *s, int cell) {
-    for (int b = 0; b < s->batches; b++)
-        for (int at = 0; at < s->batch_count[b]; at++)
-            if (s->slot[b * s->batch_cells + at] == cell) return b * s->batch_cells + at;
-    SN_ASSERT(false);
-    return 0;
 }

@@ -7,17 +7,21 @@
 //
 // Cells are sorted by region and packed in batches of SN_FE_POINTS quadrature points, so that one
 // batch has one tissue and every kernel runs over structures of arrays of fixed length. A last
-// batch is filled by repeating its last cell; `batch_count` says how many cells are real.
+// batch is filled by repeating its last cell; `batch_count` says how many cells are real. On
+// several ranks the batches hold the cells that this rank works on; all else is of the whole body.
 #pragma once
 
 #include "continuum/element.h"
+#include "continuum/ranks.h"
 
 #define SN_FE_POINTS 64 ///< quadrature points of a batch; point q of cell c stands at q * cells + c
 
 typedef struct sn_fe_space {
     sn_fe_element element;
+    sn_fe_ranks *ranks;
     int corners;  ///< nodes of the mesh
     int nodes;    ///< with midsides
+    int cells;    ///< of the mesh
     int dofs;     ///< length of x
     double *rest; ///< rest positions                              (nodes x 3)
     int *edge;    ///< ends of the edges, rising; none for P1       (edge_count x 2)
@@ -69,5 +73,5 @@ sn_status sn_fe_surface_nodes(const sn_fe_space *s, const sn_mesh *mesh, int sur
 /// Prescribed displacements at time t; a midside takes the mean of its ends.
 /// @param value  at fixed directions, m; others untouched             (nodes x 3)
 void sn_fe_space_prescribed(const sn_fe_space *s, const sn_case *c, double t, double *value);
-/// The place (batch * cells + at) of a cell of the mesh.
-int sn_fe_space_place(const sn_fe_space *s, int cell);
+/// Nodes of a cell of the mesh, with midsides.                     (element.nodes)
+void sn_fe_cell_nodes(const sn_fe_space *s, const sn_mesh *mesh, int cell, int *node);

@@ -9,6 +9,8 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "continuum/shelf.h"
+
 #define SAME_TIME 1e-9 // of `until`
 
 typedef enum direction { COUNT, WRITE, READ } direction;
@@ -18,6 +20,8 @@ typedef struct archive {
     unsigned char *at; ///< next byte
     size_t size;       ///< counted so far; of a read: bytes that are left
     bool good;         ///< false: a read came to the end, or found what cannot be
+    double *memory;    ///< of the tissues of the whole body
+    size_t numbers;    ///< its length
 } archive;
 
 static void pass(archive *a, void *data, size_t bytes) {
@@ -113,13 +117,13 @@ static void visit(archive *a, sn_fe_march *m, double *time, sn_status *status) {
     agree(a, 0x336574617473u); // "state3", and the order of bytes
     agree(a, fingerprint(m));
     agree(a, dofs);
-    agree(a, p->materials->numbers);
+    agree(a, a->numbers);
     pass_doubles(a, time, 1);
     visit_counters(a, m);
     pass_doubles(a, m->x, dofs);
     for (int k = 0; k < SN_FE_PAST; k++) pass_doubles(a, m->past[k], dofs);
     pass_doubles(a, m->force, dofs);
-    pass_doubles(a, p->materials->state, p->materials->numbers);
+    pass_doubles(a, a->memory, a->numbers);
     size_t pairs = (size_t)m->c->tool_count * (size_t)p->boundary->spots;
     if (pairs) pass(a, p->boundary->before, pairs * sizeof *p->boundary->before);
     visit_inertia(a, p->inertia, (size_t)p->space->nodes);
@@ -128,42 +132,57 @@ static void visit(archive *a, sn_fe_march *m, double *time, sn_status *status) {
 
 //---- the two ends -------------------------------------------------------------------------------
 
-sn_status sn_fe_state_save(sn_fe_march *m, double time) {
-    archive a = {.way = COUNT, .good = true};
+static sn_status hand_over(sn_fe_march *m, archive *a, double time) {
     sn_status status = SN_OK;
-    if (!m->restart || !m->restart->save) return SN_OK;
-    sn_fe_solver_forget(m->problem->solver); // a run that goes on from here has no factors either
-    m->elapsed = sn_clock() - m->started;
-    visit(&a, m, &time, &status);
-    unsigned char *bytes = sn_alloc(a.size, 1);
+    visit(a, m, &time, &status);
+    unsigned char *bytes = sn_alloc(a->size, 1);
     if (!bytes) return SN_E_MEMORY;
-    a.way = WRITE;
-    a.at = bytes;
-    visit(&a, m, &time, &status);
-    status = m->restart->save(m->restart->context, bytes, a.size);
+    a->way = WRITE;
+    a->at = bytes;
+    visit(a, m, &time, &status);
+    status = m->restart->save(m->restart->context, bytes, a->size);
     sn_free(bytes);
     return status;
 }
 
-sn_status sn_fe_state_restore(sn_fe_march *m, int *stop) {
-    *stop = -1;
-    if (!m->restart || !m->restart->state) return SN_OK;
-    archive a = {.way = READ, .good = true, .size = m->restart->bytes};
+sn_status sn_fe_state_save(sn_fe_march *m, double time) {
+    const sn_fe_ranks *ranks = m->problem->space->ranks;
+    sn_fe_materials *of = m->problem->materials;
+    archive a = {.way = COUNT, .good = true, .memory = of->state, .numbers = of->numbers};
+    sn_fe_shelf shelf = {0};
+    sn_status status = SN_OK;
+    if (!sn_fe_from_first(ranks, m->restart && m->restart->save)) return SN_OK;
+    // a run that goes on from here has no factors either
+    if (m->problem->solver) sn_fe_solver_forget(m->problem->solver);
+    m->elapsed = sn_clock() - m->started;
+    if (ranks->count > 1) {
+        status = sn_fe_agree(ranks, sn_fe_shelf_init(m->problem, ranks->rank == 0, &shelf));
+        if (status == SN_OK) status = sn_fe_shelf_fill(&shelf);
+        a.memory = shelf.all;
+        a.numbers = shelf.total;
+    }
+    if (status == SN_OK)
+        status = sn_fe_agree(ranks, ranks->rank == 0 ? hand_over(m, &a, time) : SN_OK);
+    sn_fe_shelf_free(&shelf);
+    return status;
+}
+
+static sn_status take_up(sn_fe_march *m, archive *a, int *stop) {
     sn_status status = SN_OK;
     double time = 0.0;
     uint64_t head[2];
-    if (a.size >= sizeof head) memcpy(head, m->restart->state, sizeof head);
-    if (a.size >= sizeof head && head[1] != fingerprint(m))
+    if (a->size >= sizeof head) memcpy(head, m->restart->state, sizeof head);
+    if (a->size >= sizeof head && head[1] != fingerprint(m))
         return sn_fail(SN_E_DATA, "resume: the state is not of this case: mesh, tissues, loads, "
                                   "element and analysis must be those of the run that was killed");
-    unsigned char *copy = sn_alloc(a.size, 1);
+    unsigned char *copy = sn_alloc(a->size, 1);
     if (!copy) return SN_E_MEMORY;
-    memcpy(copy, m->restart->state, a.size);
-    a.at = copy;
-    visit(&a, m, &time, &status);
+    memcpy(copy, m->restart->state, a->size);
+    a->at = copy;
+    visit(a, m, &time, &status);
     sn_free(copy);
     if (status != SN_OK) return status;
-    if (!a.good || a.size != 0)
+    if (!a->good || a->size != 0)
         return sn_fail(SN_E_DATA, "resume: the state of %zu bytes is damaged or of another version",
                        m->restart->bytes);
     m->started = sn_clock() - m->elapsed;
@@ -173,4 +192,24 @@ sn_status sn_fe_state_restore(sn_fe_march *m, int *stop) {
         return sn_fail(SN_E_DATA, "resume: the case has no output at %g s, where the state is",
                        time);
     return SN_OK;
+}
+
+sn_status sn_fe_state_restore(sn_fe_march *m, int *stop) {
+    const sn_fe_ranks *ranks = m->problem->space->ranks;
+    sn_fe_materials *of = m->problem->materials;
+    sn_fe_shelf shelf = {0};
+    sn_status status = SN_OK;
+    *stop = -1;
+    if (!m->restart || !m->restart->state) return SN_OK;
+    archive a = {.way = READ, .good = true, .size = m->restart->bytes, .memory = of->state};
+    a.numbers = of->numbers;
+    if (ranks->count > 1) {
+        status = sn_fe_shelf_init(m->problem, true, &shelf);
+        a.memory = shelf.all;
+        a.numbers = shelf.total;
+    }
+    if (status == SN_OK) status = take_up(m, &a, stop);
+    if (status == SN_OK && ranks->count > 1) sn_fe_shelf_take(&shelf);
+    sn_fe_shelf_free(&shelf);
+    return sn_fe_agree(ranks, status);
 }

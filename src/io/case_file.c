@@ -29,6 +29,7 @@ static const char *const scheme_names[] = {"bdf2", "backward-euler"};
 static const char *const precision_names[] = {"single", "double"};
 static const char *const element_names[] = {"P1", "P2", "P2P1"};
 static const char *const analysis_names[] = {"quasi-static", "dynamic", "linear"};
+static const char *const solver_names[] = {"direct", "iterative"};
 
 static sn_status read_step(const sn_yaml *node, double *step) {
     if (node->kind == SN_YAML_TEXT) {
@@ -132,11 +133,11 @@ static sn_status read_constants(const sn_yaml *springs, sn_case *c) {
 
 sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
     static const char *const keys[] = {
-        "element",   "analysis",         "steps",         "step", "rho_infinity",
-        "tolerance", "memory_tolerance", "step_tolerance"};
+        "element",   "analysis",         "steps",          "step",  "rho_infinity",
+        "tolerance", "memory_tolerance", "step_tolerance", "solver"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 8));
+    SN_TRY(sn_yaml_map(node, keys, (int)(sizeof keys / sizeof *keys)));
     if ((value = sn_yaml_get(node, "element"))) {
         SN_TRY(sn_yaml_choice(value, element_names, 3, &index));
         def->element = (sn_element)index;
@@ -144,6 +145,10 @@ sn_status sn_case_read_continuum(const sn_yaml *node, sn_continuum_def *def) {
     if ((value = sn_yaml_get(node, "analysis"))) {
         SN_TRY(sn_yaml_choice(value, analysis_names, 3, &index));
         def->analysis = (sn_analysis)index;
+    }
+    if ((value = sn_yaml_get(node, "solver"))) {
+        SN_TRY(sn_yaml_choice(value, solver_names, 2, &index));
+        def->solver = (sn_solver)index;
     }
     if ((value = sn_yaml_get(node, "steps"))) SN_TRY(sn_yaml_int(value, 1, 1000000, &def->steps));
     SN_TRY(read_continuum_step(node, def));
