@@ -6,7 +6,6 @@
 #include <string.h>
 
 #define PROBED_STRAIN 1e-5
-#define SOLVED 1e-11 // of the residual
 
 //---- what belongs to a linear displacement -------------------------------------------------------
 
@@ -148,7 +147,7 @@ static sn_status solve(sn_fe_march *m) {
     for (int d = 0; d < dofs; d++)
         if (row[d] >= 0) n->right[row[d]] = p->external[d] - p->lifted[d];
     // factors of large systems are rough: the solver iterates with them, and keeps them
-    SN_TRY(sn_fe_solver_reduce(p->solver, SOLVED, n->right, n->solution, &good));
+    SN_TRY(sn_fe_solver_reduce(p->solver, SN_FE_EXACT, n->right, n->solution, &good));
     for (int k = 0; k < p->pattern->total && good; k++) good = isfinite(n->solution[k]);
     if (!good)
         return sn_fail(SN_E_SOLVER,

@@ -243,7 +243,8 @@ fail:
     return status;
 }
 
-sn_status sn_fe_solver_factor(sn_fe_solver *s, bool *good) {
+// Factors the present values, or builds the hierarchy.
+static sn_status renew(sn_fe_solver *s, bool *good) {
     sn_status status = SN_OK;
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     if (s->multigrid && s->def.soft) s->def.assemble(s->def.context, false);
@@ -394,7 +395,7 @@ static sn_status refine(sn_fe_solver *s, bool *good) {
     PetscPushErrorHandler(PetscReturnErrorHandler, NULL);
     TRY_PETSC(MatDestroy(&s->factor), "factorisation");
     SN_TRY_GOTO(status, analyse(s));
-    SN_TRY_GOTO(status, sn_fe_solver_factor(s, good));
+    SN_TRY_GOTO(status, renew(s, good));
 fail:
     PetscPopErrorHandler();
     return status;
@@ -407,7 +408,7 @@ static sn_status reduce_by_factors(sn_fe_solver *s, double reduction, double *b,
     if (s->factored && s->marginal * s->digits <= s->spent)
         SN_TRY(iterate(s, reduction, (int)fmin(ceil(s->price), BASIS_MOST), b, x, &done));
     if (done) return SN_OK;
-    SN_TRY(sn_fe_solver_factor(s, good));
+    SN_TRY(renew(s, good));
     if (!*good) return SN_OK;
     SN_TRY(appraise(s));
     s->digits = s->marginal = 0.0;
@@ -458,7 +459,7 @@ static sn_status reduce_by_multigrid(sn_fe_solver *s, double reduction, double *
         SN_TRY(iterate(s, reduction, most, b, x, &done));
     }
     if (done) return SN_OK;
-    SN_TRY(sn_fe_solver_factor(s, good));
+    SN_TRY(renew(s, good));
     s->digits = s->marginal = 0.0;
     s->spent = HIERARCHY;
     if (*good) SN_TRY(iterate(s, reduction, CYCLES_MOST, b, x, &done));
@@ -478,12 +479,4 @@ sn_status sn_fe_solver_reduce(sn_fe_solver *s, double reduction, double *b, doub
     sn_status status = reduce(s, reduction, b, x, good);
     s->work.seconds += (double)(clock() - start) / CLOCKS_PER_SEC;
     return status;
-}
-
-sn_status sn_fe_solver_solve(sn_fe_solver *s, double *b, double *x) {
-    bool good = true;
-    if (!s->multigrid) return apply(s, b, x);
-    SN_TRY(sn_fe_solver_reduce(s, SN_FE_EXACT, b, x, &good));
-    for (int k = 0; k < s->def.pattern->total && !good; k++) x[k] = (double)NAN;
-    return SN_OK;
 }

@@ -64,9 +64,3 @@ typedef struct sn_fe_solver_work {
     double seconds;     ///< of the processor, in sn_fe_solver_reduce()
 } sn_fe_solver_work;
 sn_fe_solver_work sn_fe_solver_done(const sn_fe_solver *solver);
-/// Factors the present values (iterative: builds the hierarchy). *good is false where the matrix is
-/// singular or not finite.
-sn_status sn_fe_solver_factor(sn_fe_solver *solver, bool *good);
-/// Solves with the last factors (iterative: to SN_FE_EXACT). @param b, x  as in
-/// sn_fe_solver_reduce()
-sn_status sn_fe_solver_solve(sn_fe_solver *solver, double *b, double *x);

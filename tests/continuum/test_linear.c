@@ -135,7 +135,7 @@ static void homogeneous(void **state) {
 }
 
 // Factors of large systems are rough (solver.c), and the solution must not be: uniaxial closed
-// form at K/G = 50, to the 1e-11 of the solver times the condition of the system.
+// form at K/G = 50, to the 1e-10 of the solver times the condition of the system.
 static void large_systems(void **state) {
     (void)state;
     const double G = 3000, K = 150e3, E = 9 * K * G / (3 * K + G);
