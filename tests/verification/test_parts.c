@@ -1,11 +1,7 @@
 // A memory for each part of the stress, and fibres beside springs: the rungs against linear finite
 // elements and against the virtual testing machine.
 // SPDX-License-Identifier: Apache-2.0
-#include <math.h>
-#include <string.h>
-
-#include "check.h"
-#include "sinew/sinew.h"
+#include "engines.h"
 
 #define LENGTH 0.012
 #define SIDE 0.004
@@ -75,31 +71,6 @@ static sn_case *strip(const sn_tissue *t, double turn, bool clamped, double pull
     c->continuum.steps = 150; // 100 in the ramp
     CHECK_OK(sn_case_check(c));
     return c;
-}
-
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
-
-static sn_record *reaction(engine *run, const sn_case *c) {
-    sn_record *history;
-    sn_run_summary summary = {0};
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(run(c, &(sn_output){0}, &summary, history));
-    if (!summary.converged) print_message("%s\n", summary.reason);
-    assert_true(summary.converged);
-    return history;
-}
-
-// largest difference of the pulls over the largest pull of b
-static double distance(const sn_record *a, const sn_record *b) {
-    const double *x = sn_record_values(a, "pull_fx"), *y = sn_record_values(b, "pull_fx");
-    double largest = 0, difference = 0;
-    assert_int_equal(a->rows, b->rows);
-    for (int i = 0; i < a->rows; i++) {
-        largest = fmax(largest, fabs(y[i]));
-        difference = fmax(difference, fabs(x[i] - y[i]));
-    }
-    assert_true(largest > 0);
-    return difference / largest;
 }
 
 // Coupled springs without the volume term are linear elements with branches too: pulled and sheared

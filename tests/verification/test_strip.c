@@ -1,8 +1,7 @@
 // One tissue, one strip, three ways: the virtual testing machine, the springs, the finite elements.
 // SPDX-License-Identifier: Apache-2.0
+#include "engines.h"
 #include "laws.h"
-
-#include "sinew/sinew.h"
 
 #define LENGTH 0.012
 #define SIDE 0.003
@@ -68,31 +67,6 @@ static sn_case *strip(double bulk_ratio, bool clamped) {
     c->continuum.steps = 150; // 100 in the ramp: the recursion is second order in the step
     CHECK_OK(sn_case_check(c));
     return c;
-}
-
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
-
-static sn_record *reaction(engine *run, const sn_case *c) {
-    sn_record *history;
-    sn_run_summary summary = {0};
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(run(c, &(sn_output){0}, &summary, history));
-    if (!summary.converged) print_message("%s\n", summary.reason);
-    assert_true(summary.converged);
-    return history;
-}
-
-// largest difference of the pulls over the largest pull of b
-static double distance(const sn_record *a, const sn_record *b) {
-    const double *x = sn_record_values(a, "pull_fx"), *y = sn_record_values(b, "pull_fx");
-    double largest = 0, difference = 0;
-    assert_int_equal(a->rows, b->rows);
-    for (int i = 0; i < a->rows; i++) {
-        largest = fmax(largest, fabs(y[i]));
-        difference = fmax(difference, fabs(x[i] - y[i]));
-    }
-    assert_true(largest > 0);
-    return difference / largest;
 }
 
 // the pull that the virtual test of the same tissue gives for this cross-section
