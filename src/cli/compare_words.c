@@ -146,8 +146,14 @@ static void say_choice(const speech *to, const char *limit, const compare_summar
         mesh);
 }
 
+// Published rules are there to be compared with: where they are near, errors have cancelled.
+static bool is_baseline(const compare_summary *row) {
+    const char *name = sn_compare_model_name(row->model);
+    return strncmp(name, "uniform", 7) == 0 || strncmp(name, "lloyd", 5) == 0;
+}
+
 static bool is_candidate(const compare_summary *row) {
-    return row->cases > 0 && row->missing == 0 && isfinite(row->slowest);
+    return row->cases > 0 && row->missing == 0 && isfinite(row->slowest) && !is_baseline(row);
 }
 
 static void say_choices(const speech *to, const compare_summary *rows, int count, int cases) {
@@ -187,8 +193,8 @@ static void say_reference(const speech *to, const compare_study *s) {
             unknown++;
     }
     say(to,
-        "The reference's own error is at most %s: errors below %s are not told apart, and the "
-        "smaller ones of the table are no better than that.",
+        "The reference's own error, at most: %s. Errors up to three times that (%s) are not told "
+        "apart.",
         compare_percent(worst), compare_percent(3 * worst));
     if (unknown)
         say(to, "In %d of %d cases the reference's own error is not known, or there is none.",
