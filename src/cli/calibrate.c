@@ -98,9 +98,14 @@ static void region_table(sn_report *report, const sn_calibration_region *r) {
     snprintf(text[0][0], CELL, "virtual test");
     snprintf(text[0][1], CELL, "error [%%]");
     for (int k = 0; k < r->error_count; k++) {
+        const double error = 100 * r->error[k].error;
+        char number[CELL];
+        snprintf(number, sizeof number, "%+.3g", error);
         snprintf(text[k + 1][0], CELL, "%s", r->error[k].name);
-        snprintf(text[k + 1][1], CELL, isfinite(r->error[k].error) ? "%+.3g" : "not found",
-                 100 * r->error[k].error);
+        snprintf(text[k + 1][1], CELL, "%s",
+                 !isfinite(error)     ? "not found"
+                 : fabs(error) < 1e-6 ? "0"
+                                      : number);
     }
     for (int k = 0; k < 2 * (r->error_count + 1); k++) cells[k] = text[k / 2][k % 2];
     sn_report_table(
