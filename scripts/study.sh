@@ -8,25 +8,29 @@ sinew=$(realpath "$1")
 folder=${2:-build/study}
 cases=$folder/cases
 mkdir -p "$cases"
-cp examples/study/*.yaml examples/study/block.msh "$cases"
+cp examples/study/*.yaml examples/study/*.msh "$cases"
 rm -f "$cases"/*-[0-9]*-*.yaml
-# variant NAME TEXT FILE TISSUE FACTOR: a case of another tissue and load
+# variant NAME TEXT FILE TISSUE FACTOR WAY: a case of another tissue, and load or motion
 variant() {
-    sed -e "s/^case: .*/case: $2/" -e "s/linear.yaml/$4.yaml/" -e "s/\[1 s, 1\]/[1 s, $5]/" \
-        "examples/study/$3.yaml" >"$cases/$1.yaml"
+    sed -e "s/^case: .*/case: $2/" -e "s/linear\(-memory\)\{0,1\}.yaml/$4.yaml/" -e "s/\[1 s, 1\]/[1 s, $5]/" \
+        -e "/displacement/s/1 mm/$6 mm/" "examples/study/$3.yaml" >"$cases/$1.yaml"
 }
 elastic='' memory='' gmsh=''
-while read -r file strain tissue factor; do
+while read -r file strain tissue factor way; do
     case $file in '' | '#'*) continue ;; esac
     load=${file%-deep}
     name=$load-$strain-$tissue
-    variant "$name" "$load to $strain % of a tissue of law $tissue" "$file" "$tissue" "$factor"
+    text="$load to $strain % of a tissue of law $tissue"
+    variant "$name" "$text" "$file" "$tissue" "$factor" -
     elastic="$elastic $cases/$name.yaml"
-    # the load stays, and the tissue relaxes for two seconds
-    variant "$name-memory" "$load to $strain % of a tissue of law $tissue with memory" "$file" "$tissue-memory" \
-        "$factor"
-    sed -i -e 's/until: 1 s/until: 3 s/' -e 's/output_every: [^}]*/output_every: 0.25 s/' -e 's/steps: 4/steps: 12/' \
-        "$cases/$name-memory.yaml"
+    if [ -e "examples/study/$file-held.yaml" ]; then
+        variant "$name-memory" "$text with memory" "$file-held" "$tissue-memory" 1 "$way"
+        # stress that bends over a step of a quarter of a second makes 1 % at large strain
+        [ "$strain" -le 5 ] || sed -i 's/step: 0.25 s/step: 0.125 s/' "$cases/$name-memory.yaml"
+    else # the load stays, and the tissue creeps for two seconds
+        variant "$name-memory" "$text with memory" "$file" "$tissue-memory" "$factor" -
+        sed -i -e 's/until: 1 s/until: 3 s/' -e 's/steps: 4/steps: 12/' "$cases/$name-memory.yaml"
+    fi
     memory="$memory $cases/$name-memory.yaml"
     # the same block as gmsh cuts it
     case $name in

@@ -1,7 +1,7 @@
 // A block of 40 x 20 x 20 mm: gmsh -3 -format msh2 -o block.msh block.geo
 SetFactory("OpenCASCADE");
 Box(1) = {0, 0, 0, 40, 20, 20};
-MeshSize{:} = 4.2;
+MeshSize{:} = 3.9;
 Physical Volume("body") = {1};
 Physical Surface("left") = {1};
 Physical Surface("right") = {2};

@@ -24,9 +24,10 @@ typedef struct sn_comparison_errors {
     double reaction_rms;   ///< the same of the force columns of the history (probes, tools)
     double stress_rms;     ///< Cauchy stress, over cells (by volume) and output times
     double energy;         ///< W + U of the instantaneous law at the end
-    double relaxation_max; ///< of what answers, times the one factor that brings it nearest to the
-                           ///< reference: what is left when the elastic error is taken out; largest
-                           ///< over output times. NAN where no tissue has a memory
+    double relaxation_max; ///< of the force on what is moved, without what of it is elastic
+                           ///< (docs/theory/study.md): what the memory is in error by; largest
+                           ///< over output times. NAN where no tissue has a memory or no force
+                           ///< answers
 } sn_comparison_errors;
 
 /// Frames of 1 ms of the explicit engine in single precision, at its stable step, as a simulator
@@ -53,6 +54,8 @@ typedef struct sn_comparison_model {
     sn_record *response;  ///< owned; time, then for each load that moves or pushes and each tool
                           ///< that moves what is prescribed and what answers
                           ///< (NAME_displacement [m], NAME_force [N] in either order)
+    sn_record *elastic;   ///< owned; the same response where no tissue has a memory; NULL where
+                          ///< none has one anyway, no force answers or that run did not end
     int points;           ///< nodes of the reference's mesh
     double *displacement; ///< there, at the last common time, owned  (points x 3)
     double *distance;     ///< to the reference there, m, owned       (points)

@@ -220,18 +220,20 @@ static void put_model(bytes *b, const sn_comparison_model *m) {
     put_record(b, m->history);
     put_record(b, m->energy);
     put_record(b, m->response);
+    put_record(b, m->elastic);
     put(b, m->displacement, 3 * (size_t)m->points * sizeof(double));
     put(b, m->distance, (size_t)m->points * sizeof(double));
 }
 
 static void get_model(bytes *b, sn_comparison_model *m) {
     get(b, m, sizeof *m);
-    m->history = m->energy = m->response = NULL; // another process had them there
+    m->history = m->energy = m->response = m->elastic = NULL; // another process had them there
     m->displacement = m->distance = NULL;
     if (!b->good) return;
     m->history = get_record(b);
     m->energy = get_record(b);
     m->response = get_record(b);
+    m->elastic = get_record(b);
     b->good = b->good && m->points >= 0;
     if (!b->good || m->points == 0) return;
     m->displacement = get_numbers(b, 3 * (size_t)m->points);

@@ -91,9 +91,11 @@ static sn_status add_tables(sn_report *report, const compare_study *s) {
                       "engine in single precision, the slowest case.");
     compare_table_release(&table);
     SN_TRY(compare_cases_table(s, &table));
-    compare_table_add(report, &table,
-                      "Every case on its finest mesh: error of displacements / of the answer. Each "
-                      "case has a page of its own, in the folder of its name.");
+    compare_table_add(
+        report, &table,
+        "Every case on its finest mesh: error of displacements / of the answer / of "
+        "the memory where there is one. Each case has a page of its own, in the folder "
+        "of its name.");
     compare_table_release(&table);
     return SN_OK;
 }

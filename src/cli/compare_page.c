@@ -253,8 +253,9 @@ static sn_status fill(sn_report *report, const compare_study *s, const compare_c
         report, &table,
         "Errors over the reference's largest value of the whole run; the reference's own row holds "
         "its estimated error. Answer: the force on what is moved, the motion of what is pushed. "
-        "Relaxation: what is left of the answer's error when one factor is taken out. P1: what the "
-        "mesh alone costs. Real time: simulated over wall time, of the run itself and live (frames "
+        "Relaxation: what is left of a force's error when the elastic part is taken out. P1: what "
+        "the mesh alone costs. Real time: simulated over wall time, of the run itself and live "
+        "(frames "
         "of 1 ms of the explicit engine, single precision). Memory: peak of the run.");
     compare_table_release(&table);
     bodies(report, s, one);

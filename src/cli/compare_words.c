@@ -393,13 +393,20 @@ static bool is_used(const compare_study *s, int k, int mesh) {
     return false;
 }
 
+// displacement and answer, and of a memory what is its own
+static void put_errors(char cell[64], const sn_comparison_errors *e) {
+    snprintf(cell, 64, "%s / %s", compare_percent(e->displacement_rms),
+             compare_percent(e->response_rms));
+    const size_t used = strlen(cell);
+    if (!isnan(e->relaxation_max))
+        snprintf(cell + used, 64 - used, " / %s", compare_percent(e->relaxation_max));
+}
+
 static void fill_case(const compare_study *s, const compare_case *one, int mesh, compare_table *t) {
     char(*row)[64] = compare_table_row(t);
-    const sn_comparison_errors *own = &one->reference.model.error;
     int c = 2;
     snprintf(row[0], 64, "%.63s", short_name(one));
-    snprintf(row[1], 64, "%s / %s", compare_percent(own->displacement_rms),
-             compare_percent(own->response_rms));
+    put_errors(row[1], &one->reference.model.error);
     for (int k = 0; k < one->run_count && c < t->columns; k++) {
         const compare_run *run = &one->run[k];
         if (!is_used(s, k, mesh)) continue;
@@ -408,8 +415,7 @@ static void fill_case(const compare_study *s, const compare_case *one, int mesh,
         else if (!run->result.done)
             snprintf(row[c], 64, "not to the end");
         else
-            snprintf(row[c], 64, "%s / %s", compare_percent(run->result.error.displacement_rms),
-                     compare_percent(run->result.error.response_rms));
+            put_errors(row[c], &run->result.error);
         c++;
     }
 }

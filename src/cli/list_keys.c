@@ -321,7 +321,7 @@ static const key_row runs[] = {
         {prefix ".stress_rms", "1", "root mean square error of stresses"},                         \
         {prefix ".energy", "1", "error of the elastic energy"},                                    \
         {prefix ".relaxation_max", "1",                                                            \
-         "of the response without its elastic error; null: no memory"},                            \
+         "of a force without its elastic error; null: no memory, no force answers"},               \
         {prefix ".wall_s", "s", "time it took"},                                                   \
         {prefix ".real_time_factor", "1", "simulated over wall"},                                  \
         {prefix ".live", "", "frames of 1 ms of the explicit engine; null for elements"},          \

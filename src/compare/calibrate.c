@@ -153,6 +153,18 @@ static sn_status baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_
     return status;
 }
 
+sn_status sn_calibration_baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_set **set) {
+    sn_case *own;
+    *set = NULL;
+    SN_TRY(sn_calibration_case(c, &own));
+    sn_status status = baseline(own, rule, set);
+    sn_case_destroy(own);
+    if (status == SN_OK) return SN_OK;
+    sn_spring_set_destroy(*set);
+    *set = NULL;
+    return status;
+}
+
 //---- the full rule -------------------------------------------------------------------------------
 
 // Appends the springs of a body to the set of the whole.

@@ -126,7 +126,7 @@ static sn_status measure(sn_case *c, sn_case *other, bool coarser, const sn_outp
     sn_comparison_errors *e = &r->model.error;
     SN_TRY_GOTO(status,
                 sn_model_errors(points, coarser ? &twin_run : run, coarser ? &twin : &r->model,
-                                &sampled, &fine_model, sn_case_remembers(c), e));
+                                &sampled, &fine_model, sn_case_memory(c), e));
     double factor = coarser ? 1.0 / 3 : 4.0 / 3;
     double *all[] = {&e->displacement_rms, &e->displacement_max, &e->response_rms,
                      &e->reaction_rms,     &e->stress_rms,       &e->energy,

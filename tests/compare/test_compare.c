@@ -82,10 +82,11 @@ static void coupled_is_p1(void **state) {
     }
 }
 
-// Every rung has the memory exactly. At small strain its elastic error is one factor, and nothing
-// else is left; but the force of central springs bends by about 0.4 times the strain that moves it
-// (stiffer in tension than in compression), here 0.6 %: 0.3 % of the peak. At large strain no
-// factor takes that out; rungs with the tissue's own law stay within 1 %.
+// Every rung has the memory exactly. At small strain, 0.6 %, what is left without the elastic error
+// is the square of that strain, 4e-5, times a few. At large strain, 30 %, the law that takes the
+// elastic error out is only near the truth (strains do not follow the motion when the stress has
+// relaxed), and springs go by steps of an eighth of a second, the reference by shorter ones: a
+// quarter of a per cent is measured.
 static void memory_is_exact(void **state) {
     (void)state;
     const double hold[2][3] = {{0, 0.5, 3}, {0, 1, 1}};
@@ -113,8 +114,12 @@ static void memory_is_exact(void **state) {
                           small ? "small" : "large", cyclic ? "cycles" : "hold", r.model[k].name,
                           100 * r.model[k].error.response_rms,
                           100 * r.model[k].error.relaxation_max);
-            if (small) CHECK_ABS(r.model[k].error.relaxation_max, 0, 3e-3);
-            if (k > 0) CHECK_ABS(r.model[k].error.relaxation_max, 0, 0.01);
+            CHECK_ABS(r.model[k].error.relaxation_max, 0, small ? 2e-4 : 0.005);
+            // forces of the same motion without memory are there, and never less
+            const sn_record *force = r.model[k].response, *elastic = r.model[k].elastic;
+            assert_non_null(elastic);
+            assert_int_equal(elastic->rows, force->rows);
+            assert_true(elastic->series[2].value[8] > 1.1 * force->series[2].value[8]);
         }
         // the elastic error is there to be taken out, and the force does relax
         assert_true(r.model[3].error.response_rms > 0.02);
@@ -147,6 +152,7 @@ static void responses(void **state) {
     CHECK_REL(r.model[0].error.response_rms, sqrt(squares / 3) / y[2], 1e-12);
     assert_true(isnan(r.model[0].error.reaction_rms));   // no probe, no tool
     assert_true(isnan(r.model[0].error.relaxation_max)); // no memory
+    assert_null(r.model[0].elastic);
     assert_true(r.reference.model.error.response_rms > 0);
     sn_comparison_destroy(&r);
     sn_case_destroy(c);
