@@ -62,7 +62,8 @@ SN_API const char *sn_net_response_name(int test);
 /// @param held   the surface moves as that of the body instead, and only the inside is free
 /// @param tests  one bit a test
 /// @param error  stiffness over the body's, less 1; NAN where it was not asked for or not found
-/// @return SN_OK, SN_E_UNSUPPORTED (several regions, fibres, incompressible), SN_E_MEMORY.
+/// @return SN_OK, SN_E_UNSUPPORTED (several regions, fibres that carry tension only or turn from
+/// cell to cell, incompressible), SN_E_MEMORY.
 SN_API sn_status sn_net_responses(const sn_net *net, bool held, unsigned tests,
                                   double error[SN_RESPONSES]);
 

@@ -42,41 +42,23 @@ static double stored(const branches *b, size_t block, size_t k, size_t i) {
 
 //---- springs -------------------------------------------------------------------------------------
 
-// stretch at which the law gives t
-static double stretch_of(double B, double t) {
-    if (t >= 0) return 1.0 + (fabs(B) < 1e-12 ? t : log1p(B * t) / B);
-    double x = 1.0; // of x^3 - 3 t x^2 - 1, convex and rising above its root
-    for (int turn = 0; turn < 60; turn++) {
-        double step = (x * x * (x - 3.0 * t) - 1.0) / (3.0 * x * (x - 2.0 * t));
-        x -= step;
-        if (fabs(step) < 1e-15 * x) break;
-    }
-    return x;
-}
-
-// energy over stiffness and squared rest length
-static double potential(double B, double lambda) {
-    const double y = lambda - 1.0;
-    if (y < 0) return (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
-    if (fabs(B * y) < 1e-5) return y * y * (0.5 + B * y / 6.0);
-    return (expm1(B * y) / B - y) / B;
-}
-
 static double of_springs(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
     const branches b = branches_of(net, region, m, SN_STORE_SPRING);
     const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
-    const double *inverse = net->data[SN_DOUBLE].inverse, B = region->exponent;
+    const double *inverse = net->data[SN_DOUBLE].inverse;
     double sum = 0;
     for (size_t n = 0; n < (size_t)region->spring_blocks * SN_BLOCK; n++) {
         const size_t slot = (size_t)region->spring_block * SN_BLOCK + n;
         const size_t block = n / SN_BLOCK, lane = n % SN_BLOCK;
         if (!(stiffness[slot] > 0)) continue;
-        const double T = stored(&b, block, 0, lane), lambda = stretch_of(B, T);
-        const double now = potential(B, lambda);
+        const sn_spring_law law = sn_net_spring_law(net, region, (int)slot);
+        const double T = stored(&b, block, 0, lane), lambda = sn_spring_stretch(&law, T);
+        const double now = sn_spring_potential(&law, lambda);
         for (int k = 0; k < b.memory->terms; k++) {
             const double g = b.memory->g[k];
-            const double t = T - stored(&b, block, (size_t)k + 1, lane) / g, v = stretch_of(B, t);
-            double held = now - potential(B, v) - t * (lambda - v);
+            const double t = T - stored(&b, block, (size_t)k + 1, lane) / g;
+            const double v = sn_spring_stretch(&law, t);
+            double held = now - sn_spring_potential(&law, v) - t * (lambda - v);
             sum += g * stiffness[slot] / inverse[slot] * fmax(held, 0.0); // rounding
         }
     }

@@ -276,7 +276,8 @@ static void central_cell(const sn_net *net, const sn_net_region *region, const s
     for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
         const int s = net->spring_share[q];
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
-        const double inverse = ((const double *)data->inverse)[s], B = region->exponent;
+        const double inverse = ((const double *)data->inverse)[s];
+        const sn_spring_law law = sn_net_spring_law(net, region, s);
         const double part = stiffness[s] / volume[s];
         double x[3], l2 = 0, t, phi;
         for (size_t d = 0; d < 3; d++) {
@@ -286,15 +287,9 @@ static void central_cell(const sn_net *net, const sn_net_region *region, const s
                    sn_real_at(m->precision, m->u, 4 * (size_t)end[0] + d);
             l2 += x[d] * x[d];
         }
-        double lambda = sqrt(l2 * inverse), y = lambda - 1.0;
-        if (y < 0) {
-            t = (lambda - 1.0 / (lambda * lambda)) / 3.0;
-            phi = (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
-        } else {
-            bool straight = fabs(B * y) < 1e-5; // phi by two terms of its series
-            t = fabs(B * y) < 1e-12 ? y : expm1(B * y) / B;
-            phi = straight ? y * y * (0.5 + B * y / 6.0) : (t - y) / B;
-        }
+        double lambda = sqrt(l2 * inverse);
+        t = sn_spring_tension(&law, lambda, NULL);
+        phi = sn_spring_potential(&law, lambda);
         t = remembered(&r, block - (size_t)region->spring_block, lane, t);
         for (int k = 0; k < 6; k++)
             stress[k] += part * t / lambda * x[pair[k][0]] * x[pair[k][1]] / c->J;

@@ -93,6 +93,7 @@ static void set_springs(const sn_net *net, const sn_net_region *region, const sn
                         const sn_factors *factors, sn_spring_pass *pass) {
     pass->stiffness = sn_parts_stiffness(net, call->parts, call->precision);
     pass->exponent = region->exponent;
+    pass->square = region->squared ? region->square : NULL;
     pass->u = call->u;
     pass->first = region->spring_block;
     set_memory(region, call, SN_PART_DEVIATORIC, region->spring_store, factors, &pass->memory);

@@ -23,9 +23,11 @@ typedef struct sn_net_region {
     sn_tissue bare; ///< where fibred: without them
     float bare_f[SN_VALUES_MAX];
     double density;
-    double shear;      ///< instantaneous, small strain
-    double bulk;       ///< of the volume term of this net (central: what springs do not bring)
-    double exponent;   ///< B of the springs
+    double shear;    ///< instantaneous, small strain
+    double bulk;     ///< of the volume term of this net (central: what springs do not bring)
+    double exponent; ///< B of the springs
+    double square[SN_SPRING_SQUARES]; ///< C and c of the springs
+    bool squared;                     ///< not all of them 0
     double stiffening; ///< factor on the springs' stiffness from the fit of their law
     /// Of all parts of the stress; of the deviatoric one where the tissue is branched.
     sn_exponentials memory;
@@ -390,6 +392,18 @@ bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face
 /// the net to it.
 sn_status sn_net_relaxed_scale(const sn_mesh *mesh, int region, const sn_spring *spring, int count,
                                double *scale);
+/// The law of one spring (equation 14 in tension, without collapse in compression, and what a
+/// calibration adds: sinew/model.h), over stiffness and rest length.
+typedef struct sn_spring_law {
+    double exponent, up, down; ///< B; n.C n; c
+} sn_spring_law;
+sn_spring_law sn_net_spring_law(const sn_net *net, const sn_net_region *region, int slot);
+/// Force at a stretch above 0. @param slope  Nullable
+double sn_spring_tension(const sn_spring_law *law, double lambda, double *slope);
+/// Its integral from rest, over squared rest length.
+double sn_spring_potential(const sn_spring_law *law, double lambda);
+/// The stretch at which the force is t.
+double sn_spring_stretch(const sn_spring_law *law, double t);
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
 

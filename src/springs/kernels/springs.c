@@ -8,7 +8,8 @@
 // rest length, with slope 1 at rest:
 //     t = (exp(B x) - 1) / B                 in tension
 //     t = (lambda - 1/lambda^2) / 3          in compression: no spring collapses
-// and the force on end 0 is k t_visc / lambda (D + d).
+// calibrated ones in addition x (exp(C x^2) - 1), in tension with C = D.C D / L^2; the force on end
+// 0 is k t_visc / lambda (D + d).
 #include "springs/kernels/block.h"
 
 void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile);
@@ -26,6 +27,7 @@ SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
     const real B = (real)pass->exponent, third = (real)(1.0 / 3.0);
     const bool curved = fabs(pass->exponent) > 1e-20;
     const real over_B = (real)(curved ? 1.0 / pass->exponent : 0.0);
+    const double *q = pass->square;
     const real least = (real)1e-6; // of lambda^2: a spring turned to a point stays finite
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide dx = wide_load(s->d + i), dy = wide_load(s->d + SN_BLOCK + i);
@@ -41,7 +43,15 @@ SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
         wide stretched = wide_max(x, wide_set(0));
         wide pull = curved ? wide_expm1(B * stretched) * over_B : stretched;
         wide push = x * (1 + x * (1 + third * x)) * (over * over);
-        wide_store(s->t + i, wide_select(wide_less(x, wide_set(0)), push, pull));
+        wide t = wide_select(wide_less(x, wide_set(0)), push, pull);
+        if (q) {
+            wide C = (real)q[0] * Dx * Dx + (real)q[1] * Dy * Dy + (real)q[2] * Dz * Dz +
+                     2 * ((real)q[3] * Dx * Dy + (real)q[4] * Dy * Dz + (real)q[5] * Dz * Dx);
+            C = wide_select(wide_less(x, wide_set(0)), wide_set((real)q[6]),
+                            C / (Dx * Dx + Dy * Dy + Dz * Dz));
+            t = t + x * wide_expm1(wide_min(C * x * x, wide_set((real)SN_SPRING_STEEPEST)));
+        }
+        wide_store(s->t + i, t);
         wide_store(s->over + i, over);
     }
 }
