@@ -416,6 +416,7 @@ sn_stored sn_fields_stored(const sn_net *net, const sn_fields *f, const sn_momen
     const double *volume = net->data[SN_DOUBLE].volume;
     sn_stored sum = {.instant = sn_fields_elastic(net, f), .memory = sn_net_memory_energy(net, m)};
     for (int e = 0; e < net->cells; e++) sum.elastic += f->held[e] * volume[net->cell_slot[e]];
+    sum.elastic += sn_net_upright_energy(net, m);
     return sum;
 }
 

@@ -177,6 +177,7 @@ double sn_lanczos_end(const sn_net *net, const sn_frequency_call *call, sn_lancz
     for (size_t k = 0; k < n; k++) call->mode[k] = x[0] * call->basis[k];
     for (int j = 1; j < l->steps; j++)
         for (size_t k = 0; k < n; k++) call->mode[k] += x[j] * call->basis[(size_t)j * n + k];
+    if (call->parts) sn_lanczos_spread(net, call, l);
     return value;
 }
 
