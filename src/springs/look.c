@@ -31,9 +31,9 @@ enum { SPREAD_LEAST = 8, SPREAD_MOST = 64 };                         // steps of
 static const double way_first = 0.05, way_least = 1e-4;              // between looks, of an edge
 static const double way_most = 1.0;                                  // in quiet
 static const double wild_way = 0.02, wild_slope = 10, wild_most = 2; // in one step
-static const double fall = 1.0 / 64;                         // of what rules the step, in one step
-static const double doubt_first = 2, doubt_least = 1.05;     // after a cut
-static const double touched_first = 0.1, touched_most = 0.5; // from a tool's first touch on
+static const double fall = 1.0 / 64;                     // of what rules the step, in one step
+static const double doubt_first = 2, doubt_least = 1.05; // after a cut
+static const double touched_first = 0.1;                 // from a tool's first touch on
 
 // a search that follows one mode is blind to pieces apart from it: a cut body is looked at harder
 static int steps_of(const sn_state *s) {
@@ -126,7 +126,7 @@ static void rule(const sn_net *net, sn_state *s, double way) {
 }
 
 static void go_looking(const sn_net *net, sn_state *s, double way) {
-    const double far = s->touching ? fmin(s->check_way, touched_most * net->edge) : s->check_way;
+    const double far = s->check_way;
     const int spread = s->check_every > SPREAD_MOST ? SPREAD_MOST : s->check_every;
     s->moved += way;
     s->check_in--;

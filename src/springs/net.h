@@ -702,6 +702,23 @@ double sn_net_memory_energy(const sn_net *net, const sn_moment *moment);
 sn_status sn_net_history_row(const sn_net *net, const sn_moment *moment, double *row,
                              sn_record *history);
 
+/// The memory of one kind of item of a region at a moment.
+typedef struct sn_recalled {
+    const sn_moment *moment;
+    const sn_exponentials *memory;
+    size_t first, count; ///< in the store: first number, numbers of a block and branch
+    size_t branches;     ///< in the store, the viscous part too
+} sn_recalled;
+/// kind: SN_STORE_CELL …
+sn_recalled sn_recall(const sn_net *net, const sn_net_region *region, const sn_moment *moment,
+                      int kind);
+/// The instantaneous stress for k = 0, else that of branch k - 1, of number i of a block. There are
+/// none where `branches` is 0.
+static inline double sn_recalled_at(const sn_recalled *r, size_t block, size_t k, size_t i) {
+    return sn_real_at(r->moment->precision, r->moment->store,
+                      r->first + (block * (1 + r->branches) + k) * r->count + i);
+}
+
 //---- equilibrium ---------------------------------------------------------------------------------
 
 typedef struct sn_tangent sn_tangent;

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "springs/tangent.h"
+#include "springs/vectors.h"
 
 #define SOLVED 1e-5 // residual over the forces; the work is better by far
 
@@ -168,19 +169,13 @@ static void close_bench(bench *b) {
     sn_free(b->x);
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 static double free_test(bench *b, int test, const sn_moduli *moduli) {
     const size_t n = (size_t)b->net.nodes * 3;
     load(b, test, moduli);
     memset(b->x, 0, n * sizeof *b->x);
-    const double target = SOLVED * sqrt(dot(b->f, b->f, n));
+    const double target = SOLVED * sqrt(sn_dot(b->f, b->f, n));
     if (sn_tangent_solve(&b->net, b->tangent, b->f, target, b->x) < 0) return (double)NAN;
-    return b->work / dot(b->f, b->x, n) - 1.0;
+    return b->work / sn_dot(b->f, b->x, n) - 1.0;
 }
 
 // displacement at y of the body under the stress of a test, over its size
@@ -221,13 +216,13 @@ static double held_test(bench *b, int test, const sn_moduli *moduli) {
     load(b, test, moduli);
     body_displacement(b, test, moduli);
     sn_tangent_multiply(&b->net, b->tangent, b->u, b->f);
-    const double affine = dot(b->u, b->f, n);
+    const double affine = sn_dot(b->u, b->f, n);
     for (int k = 0; k < b->net.fixed_count; k++)
         b->f[3 * b->net.fixed[k].node + b->net.fixed[k].direction] = 0.0;
     memset(b->x, 0, n * sizeof *b->x);
-    const double size = sqrt(dot(b->f, b->f, n));
+    const double size = sqrt(sn_dot(b->f, b->f, n));
     if (sn_tangent_solve(&b->net, b->tangent, b->f, SOLVED * size, b->x) < 0) return (double)NAN;
-    return (affine - dot(b->f, b->x, n)) / b->work - 1.0;
+    return (affine - sn_dot(b->f, b->x, n)) / b->work - 1.0;
 }
 
 sn_status sn_net_responses(const sn_net *net, bool held, unsigned tests,

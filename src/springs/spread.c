@@ -14,30 +14,22 @@
 #include <math.h>
 
 #include "springs/net.h"
+#include "springs/vectors.h"
 
 enum { PATCH = 32, SIZE = 3 * PATCH }; // nodes, numbers
 static const double share = 0.3;       // of all patches, beside a mode of length 1
 static const double unrest = 0.03;     // of the motion without structure, of a patch
-static const uint64_t seed = 88172645463325252ull;
-
-static double next_random(uint64_t *x) {
-    *x ^= *x << 13;
-    *x ^= *x >> 7;
-    *x ^= *x << 17;
-    return (double)(*x >> 11) / 9007199254740992.0 - 0.5;
-}
 
 static double length(const double *x, size_t n) {
-    double sum = 0;
-    for (size_t k = 0; k < n; k++) sum += x[k] * x[k];
-    return sqrt(sum);
+    return sqrt(sn_dot(x, x, n));
 }
 
 void sn_lanczos_stir(const sn_net *net, double *mode) {
     const size_t n = 3 * (size_t)net->nodes;
     const double was = length(mode, n), part = share * sqrt(12 / (double)n);
-    uint64_t x = seed;
-    for (size_t k = 0; k < n; k++) mode[k] = (was > 0 ? mode[k] / was : 0) + part * next_random(&x);
+    uint64_t noise = SN_NOISE_START;
+    for (size_t k = 0; k < n; k++)
+        mode[k] = (was > 0 ? mode[k] / was : 0) + part * sn_noise(&noise);
 }
 
 // x <- T x
@@ -76,7 +68,7 @@ void sn_lanczos_spread(const sn_net *net, const sn_frequency_call *call, const s
     const size_t n = 3 * (size_t)net->nodes;
     double *last = call->basis, *before = last + n, *growth = before + n; // growth: of patches
     double most = 0, sum = 0;
-    uint64_t x = seed;
+    uint64_t noise = SN_NOISE_START;
     if (l->steps < 2) return; // nothing moves
     take_powers(l, n, call->basis);
     for (size_t p = 0, k = 0; k < n; p++, k += SIZE) {
@@ -92,6 +84,6 @@ void sn_lanczos_spread(const sn_net *net, const sn_frequency_call *call, const s
         const double weight = share * square(square(growth[p] / most)) / sqrt(sum);
         const double own = length(last + k, size);
         for (size_t i = 0; i < size && own > 0; i++)
-            call->mode[k + i] += weight * (last[k + i] / own + unrest * next_random(&x));
+            call->mode[k + i] += weight * (last[k + i] / own + unrest * sn_noise(&noise));
     }
 }
