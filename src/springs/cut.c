@@ -25,6 +25,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "springs/vectors.h"
+
 static const double same_time = 1e-9; // of the whole time: two times that are one
 
 //---- life ----------------------------------------------------------------------------------------
@@ -268,19 +270,15 @@ static void let_go(sn_state *s) {
 // what the next look starts from: the mode that was the highest, and motions without structure
 // around the cut and everywhere
 static void stir_mode(const sn_net *net, sn_state *s, int count, const int *cells) {
-    uint64_t x = 88172645463325252ull;
+    uint64_t noise = SN_NOISE_START;
     const double part = 0.5 / sqrt((double)count);
     sn_lanczos_stir(net, s->mode);
     for (int c = 0; c < count; c++)
         for (int a = 0; a < 4; a++) {
             const int slot = net->cell_slot[cells[c]];
             const int node = net->cell_node[(slot / SN_BLOCK * 4 + a) * SN_BLOCK + slot % SN_BLOCK];
-            for (int d = 0; d < 3 && !s->cut->loose[node]; d++) {
-                x ^= x << 13;
-                x ^= x >> 7;
-                x ^= x << 17;
-                s->mode[3 * node + d] += part * ((double)(x >> 11) / 9007199254740992.0 - 0.5);
-            }
+            for (int d = 0; d < 3 && !s->cut->loose[node]; d++)
+                s->mode[3 * node + d] += part * sn_noise(&noise);
         }
 }
 

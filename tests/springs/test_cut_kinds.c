@@ -8,7 +8,7 @@ enum { SORTS = 4 }; // of tissue
 // two tissues; a memory; fibres everywhere another way, with a memory for each part; both
 static sn_case *make_sort(int sort, int kind, const int cells[3]) {
     sn_tissue t = neo_hookean(6e3, 5e4), other = demiray(3e3, 4, 6e4);
-    if (sort >= 2) t = artery(3000, 4e4);
+    if (sort >= 2) t = artery(3000, 0.1, 0.5, 4e4);
     if (sort == 1) t.memory = prony(0.3, 0.01, 0.2, 0.2);
     if (sort >= 2) part_memories(&t);
     sn_case *c = make_block(size, cells, SN_PATTERN_MIRRORED, &t);
