@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "springs/tangent.h"
+#include "springs/vectors.h"
 
 #define SOLVED 1e-5 // residual over the forces; the work is better by far
 
@@ -162,19 +163,13 @@ static void close_bench(bench *b) {
     sn_free(b->x);
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 static double free_test(bench *b, int test) {
     const size_t n = (size_t)b->net.nodes * 3;
     load(b, test);
     memset(b->x, 0, n * sizeof *b->x);
-    const double target = SOLVED * sqrt(dot(b->f, b->f, n));
+    const double target = SOLVED * sqrt(sn_dot(b->f, b->f, n));
     if (sn_tangent_solve(&b->net, b->tangent, b->f, target, b->x) < 0) return (double)NAN;
-    return b->work / dot(b->f, b->x, n) - 1.0;
+    return b->work / sn_dot(b->f, b->x, n) - 1.0;
 }
 
 // Displacement at y of the body under the stress of a test, over its size. With the tensor strain
@@ -215,13 +210,13 @@ static double held_test(bench *b, int test) {
     load(b, test);
     body_displacement(b, test);
     sn_tangent_multiply(&b->net, b->tangent, b->u, b->f);
-    const double affine = dot(b->u, b->f, n);
+    const double affine = sn_dot(b->u, b->f, n);
     for (int k = 0; k < b->net.fixed_count; k++)
         b->f[3 * b->net.fixed[k].node + b->net.fixed[k].direction] = 0.0;
     memset(b->x, 0, n * sizeof *b->x);
-    const double size = sqrt(dot(b->f, b->f, n));
+    const double size = sqrt(sn_dot(b->f, b->f, n));
     if (sn_tangent_solve(&b->net, b->tangent, b->f, SOLVED * size, b->x) < 0) return (double)NAN;
-    return (affine - dot(b->f, b->x, n)) / b->work - 1.0;
+    return (affine - sn_dot(b->f, b->x, n)) / b->work - 1.0;
 }
 
 // by Gauss's method: C is symmetric and positive definite

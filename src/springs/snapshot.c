@@ -10,7 +10,7 @@
 
 #include "springs/net.h"
 
-#define SNAPSHOT_VERSION 2u
+#define SNAPSHOT_VERSION 3u
 #define SNAPSHOT_ORDER 0x01020304u
 
 /// What stands before the pieces.
@@ -108,6 +108,7 @@ static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
         PIECE(omega2),
         PIECE(seen_omega2),
         PIECE(ruling_omega2),
+        PIECE(doubt),
         PIECE(touching),
         PIECE(steps),
         PIECE(check_in),

@@ -9,14 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "springs/tangent.h"
+#include "springs/vectors.h"
 
 //---- patterns ------------------------------------------------------------------------------------
-
-static int compare_int(const void *a, const void *b) {
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
 
 // pairs of the ends of springs: those that were given need not share a cell
 static void add_springs(const sn_net *net, sn_sparsity *p, int *fill) {

@@ -1,43 +1,27 @@
 // Calibrated springs against closed forms and against quadratic elements.
 // SPDX-License-Identifier: Apache-2.0
-#include "check.h"
-
-#include "sinew/sinew.h"
+#include "build.h"
+#include "engines.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 #define SQRT1_2 0.70710678118654752
 
 static sn_tissue tissue_of(const char *law, double shear, double bulk) {
-    sn_tissue t = sn_tissue_default();
-    t.law = sn_law_find(law);
-    sn_param_defaults(t.law->params, t.law->param_count, 0, t.value);
-    CHECK_OK(sn_tissue_set(&t, strcmp(law, "demiray") ? "shear_modulus" : "c", shear));
-    CHECK_OK(sn_tissue_set(&t, "bulk_modulus", bulk));
-    if (strcmp(law, "demiray") == 0) CHECK_OK(sn_tissue_set(&t, "b", 4));
-    return t;
+    return strcmp(law, "demiray") ? neo_hookean(shear, bulk) : demiray(shear, 4, bulk);
 }
 
 // Poisson's ratio 0.45; jitter: of the inner nodes, of the edge
 static sn_case *block(int per_side, sn_pattern pattern, double jitter, const char *law) {
-    sn_case *c;
     uint64_t seed = 11;
-    CHECK_OK(sn_case_create(&c));
-    c->shape = (sn_shape_def){.shape = SN_SHAPE_BLOCK,
-                              .pattern = pattern,
-                              .size = {size[0], size[1], size[2]},
-                              .cells = {2 * per_side, per_side, per_side}};
+    const sn_tissue t = tissue_of(law, 1e4 / 2.9, 1e4 / 0.3);
+    sn_case *c = make_block(size, (const int[]){2 * per_side, per_side, per_side}, pattern, &t);
     c->has_shape = !(jitter > 0);
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
     for (int i = 0; i < 3 * c->mesh->node_count; i++) {
         const double move = check_random(&seed, -jitter, jitter) * size[1] / per_side;
         if (c->mesh->node[i] > 1e-9 && c->mesh->node[i] < size[i % 3] - 1e-9)
             c->mesh->node[i] += move;
     }
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = tissue_of(law, 1e4 / 2.9, 1e4 / 0.3);
-    c->support_count = 1;
-    c->support = sn_alloc(1, sizeof *c->support);
-    c->support[0] = (sn_support){sn_mesh_surface(c->mesh, "left"), {true, true, true}};
+    add_support(c, "left", "xyz");
     c->until = c->output_every = 1;
     c->springs.rung = SN_RUNG_CENTRAL;
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
@@ -46,29 +30,14 @@ static sn_case *block(int per_side, sn_pattern pattern, double jitter, const cha
 }
 
 static void drive(sn_case *c, double x, double y, bool sides_free) {
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {x, y, 0},
-                           .free = {sides_free, false, sides_free}};
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){0, 1}, &c->load[0].factor));
-    c->probe_count = 1;
-    c->probe = sn_alloc(1, sizeof *c->probe);
-    c->probe[0] = (sn_probe){
-        .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", x, y, 0, 1);
+    load->free[0] = load->free[2] = sides_free;
+    add_probe(c, "pull", SN_PROBE_REACTION, "right", 0, 0, 0);
 }
-
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
 
 // history of a run; the column of the force in direction d
 static sn_record *run(const sn_case *c, engine *go, int d, const double **force) {
-    sn_record *history;
-    sn_run_summary s = {0};
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(go(c, &(sn_output){0}, &s, history));
-    if (!s.converged) print_message("%s\n", s.reason);
-    assert_true(s.converged);
+    sn_record *history = reaction(go, c);
     *force = history->series[1 + d].value;
     return history;
 }
