@@ -141,12 +141,13 @@ typedef struct sn_calibration_error {
 
 typedef struct sn_calibration_region {
     char name[SN_NAME_MAX];
-    double left[2]; ///< parts of the forces that even and linearly growing strains want at nodes
-                    ///< which no springs can give; NAN but where they were fitted
-    double scale;   ///< common factor from the held tests; 1 where not fitted
-    double strain;  ///< the nonlinear part was fitted up to this |stretch - 1| and shear
-    double exponent;
-    double factor; ///< on all stiffnesses, fitted with the exponent; 1 where not fitted
+    double left[2];  ///< parts of the forces that even and linearly growing strains want at nodes
+                     ///< which no springs can give; NAN but where they were fitted
+    double scale;    ///< common factor from the held tests; 1 where not fitted
+    double strain;   ///< the nonlinear part was fitted up to this |stretch - 1| and shear
+    double exponent; ///< of the law of the springs
+    double square[SN_SPRING_SQUARES]; ///< C and c of it
+    double factor; ///< on all stiffnesses, fitted with the law; 1 where not fitted
     int error_count;
     sn_calibration_error error[SN_CALIBRATION_ERRORS_MAX];
 } sn_calibration_region;

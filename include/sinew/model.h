@@ -285,12 +285,21 @@ typedef struct sn_fibres {
 
 /// Springs of a central net in place of those that follow from the tissue's moduli, as
 /// sn_calibrate() finds them. Arrays come from sn_alloc(); sn_spring_set_destroy() frees them.
+/// With x = stretch - 1 and n its direction at rest the force of a spring, over stiffness and rest
+/// length, is
+///     (exp(B x) - 1) / B + x (exp(n.C n x^2) - 1)         in tension,
+///     (lambda - 1/lambda^2) / 3 + x (exp(c x^2) - 1)      in compression,
+/// with no more than 60 in the exponents of squares.
+#define SN_SPRING_SQUARES 7 ///< C: xx yy zz xy yz zx, then c
+
 typedef struct sn_spring_set {
     int count, region_count;
     int *end;          ///< nodes of the mesh, both of the region; no edge is needed (count x 2)
     int *region;       ///< of the mesh                            (count)
     double *stiffness; ///< N/m at small strain, 0 or more         (count)
     double *exponent;  ///< B of the law of the springs            (region_count)
+    double *square;    ///< C and c of it, 0 or more in every direction
+                       ///<                   (region_count x SN_SPRING_SQUARES)
     double *bulk;      ///< of the nodal volume energy, Pa; NAN: what the springs, stretched evenly,
                        ///< lack of the tissue's bulk modulus      (region_count)
 } sn_spring_set;

@@ -62,7 +62,8 @@ SN_API const char *sn_net_response_name(int test);
 /// @param held   the surface moves as that of the body instead, and only the inside is free
 /// @param tests  one bit a test
 /// @param error  stiffness over the body's, less 1; NAN where it was not asked for or not found
-/// @return SN_OK, SN_E_UNSUPPORTED (several regions, fibres, incompressible), SN_E_MEMORY.
+/// @return SN_OK, SN_E_UNSUPPORTED (several regions, fibres that carry tension only or turn from
+/// cell to cell, incompressible), SN_E_MEMORY.
 SN_API sn_status sn_net_responses(const sn_net *net, bool held, unsigned tests,
                                   double error[SN_RESPONSES]);
 
@@ -97,7 +98,7 @@ SN_API void sn_state_release(const sn_net *net, sn_state *state, int tool);
 /// and masses of nodes stay. Loads on their faces end; nodes that come to the surface touch tools.
 /// A node that has lost all its cells is loose: it flies by itself, with its weight, and no tool
 /// touches or holds it. Cells that are gone already count for nothing. Allocates nothing, and takes
-/// about as long as some twenty steps.
+/// about as long as five to ten steps; the next forty are up to 30 % shorter.
 /// @param cells    numbers in the mesh                              (count)
 /// @param removed  Nullable: how many there were to remove
 /// @return SN_OK, SN_E_UNSUPPORTED (the net is not cuttable), SN_E_RANGE (no such cell: nothing was

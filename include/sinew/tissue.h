@@ -67,6 +67,11 @@ SN_API sn_status sn_tissue_from_long_term(sn_tissue *tissue);
 SN_API sn_status sn_tissue_to_long_term(sn_tissue *tissue);
 /// Instantaneous small-strain moduli. A uniaxial law uses poissons_ratio for shear and bulk.
 SN_API void sn_tissue_moduli(const sn_tissue *tissue, sn_moduli *out);
+/// Instantaneous elastic stiffness at rest of a solid law, Pa: stress over strain, xx yy zz xy yz
+/// zx, shears twice the tensor's, in the axes of space. Fibres that carry tension only have no part
+/// in it.
+/// @param axes  rotation to the axes of the material: rows are those axes
+SN_API void sn_tissue_stiffness(const sn_tissue *tissue, const double axes[9], double C[6][6]);
 
 #ifdef __cplusplus
 }

@@ -38,6 +38,10 @@ static json_t *region_json(const sn_calibration_region *r) {
     cli_put_number(json, "scale", r->scale);
     cli_put_number(json, "strain", r->strain);
     cli_put_number(json, "exponent", r->exponent);
+    json_t *squares = json_array();
+    for (int k = 0; k < SN_SPRING_SQUARES; k++)
+        json_array_append_new(squares, json_real(r->square[k]));
+    cli_put(json, "squares", squares);
     cli_put_number(json, "factor", r->factor);
     for (int k = 0; k < r->error_count; k++)
         cli_put_number(errors, r->error[k].name, r->error[k].error);
@@ -68,9 +72,12 @@ static json_t *calibration_json(const sn_case *c, const sn_calibration *r) {
 //---- text ----------------------------------------------------------------------------------------
 
 static void print_region(const sn_calibration_region *r) {
-    printf("  %s: exponent %.4g, up to a strain of %.3g", r->name, r->exponent, r->strain);
+    const double *q = r->square;
+    printf("  %s: exponent %.4g, squares %.4g %.4g %.4g in tension, %.4g in compression, up to a "
+           "strain of %.3g",
+           r->name, r->exponent, q[0], q[1], q[2], q[6], r->strain);
     if (r->scale != 1 || r->factor != 1)
-        printf("; common scale %.4f, factor with the exponent %.4f", r->scale, r->factor);
+        printf("; common scale %.4f, factor with the law %.4f", r->scale, r->factor);
     printf("\n");
     if (isfinite(r->left[0]))
         printf("    nodal forces that no springs give: %.3g %% (even strains), %.3g %% (linear)\n",
@@ -113,15 +120,17 @@ static void region_table(sn_report *report, const sn_calibration_region *r) {
         "Held: stiffness at small strain over the continuum's, less 1, with the surface "
         "moved as the continuum's. Free: the same under tractions. Finite: rms of the "
         "stress up to the strain, over its largest. Small strains are measured before "
-        "the factor of the exponent.");
+        "the factor of the law.");
 }
 
 static void region_page(sn_report *report, const sn_calibration_region *r) {
     sn_report_heading(report, r->name);
     sn_report_text(report,
-                   "Exponent %.5g with a factor of %.5g on all stiffnesses, for strains up to "
-                   "%.3g; common scale %.5g.",
-                   r->exponent, r->factor, r->strain, r->scale);
+                   "Law of the springs: exponent %.5g, squares %.5g %.5g %.5g along x y z in "
+                   "tension and %.5g in compression, with a factor of %.5g on all stiffnesses, for "
+                   "strains up to %.3g; common scale %.5g.",
+                   r->exponent, r->square[0], r->square[1], r->square[2], r->square[6], r->factor,
+                   r->strain, r->scale);
     if (isfinite(r->left[0]))
         sn_report_text(report,
                        "Of the nodal forces that a continuum answers even strains with, %.3g %% "
@@ -212,8 +221,7 @@ static int run(const cli_command *command, int argc, char **argv) {
          "lloyd (published rules)"},
         {"strain", CLI_QUANTITY, "STRAIN", "1", &o.strain,
          "|stretch - 1| up to which the law of the springs is fitted; 0: what the case comes to in "
-         "a "
-         "quick run"},
+         "a quick run"},
         {"out", CLI_TEXT, "DIR", NULL, &o.folder,
          "writes springs.csv, calibration.json and report.html there"},
     };

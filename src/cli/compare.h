@@ -88,6 +88,10 @@ void compare_words(const compare_study *study, const compare_case *only,
 
 /// report.html of one case.
 sn_status compare_write_page(const char *path, const compare_study *study, const compare_case *one);
+/// Draws errors, from 0 to 1, over what the plot says, both logarithmic; nothing without a line.
+void compare_error_plot(sn_report *report, const sn_plot *plot);
+/// What compare_words() calls to put its paragraphs into a sn_report.
+void compare_add_words(void *report, const char *text);
 /// report.html over several cases.
 sn_status compare_write_overview(const char *path, const compare_study *study);
 

@@ -4,7 +4,6 @@
 // A kept file is made of bytes of this machine and this version: a head with the sizes of the
 // structures, the structure itself, then the arrays that it owns. The name is a fingerprint of
 // everything that the numbers depend on, so that a case that was changed is run anew.
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -12,102 +11,13 @@
 
 //---- fingerprint ---------------------------------------------------------------------------------
 
-// FNV-1a, 64 bits
-static unsigned long long mix(unsigned long long hash, const void *bytes, size_t count) {
-    const unsigned char *at = bytes;
-    for (size_t k = 0; k < count; k++) hash = (hash ^ at[k]) * 1099511628211ull;
-    return hash;
+static uint64_t mix_text(uint64_t hash, const char *text) {
+    return sn_hash(hash, text, strlen(text) + 1);
 }
 
-typedef struct fingerprint {
-    unsigned long long hash;
-} fingerprint;
-
-static void add_text(fingerprint *f, const char *text) {
-    f->hash = mix(f->hash, text, strlen(text) + 1);
-}
-
-static void add_number(fingerprint *f, double value) {
-    f->hash = mix(f->hash, &value, sizeof value);
-}
-
-static void add_numbers(fingerprint *f, const double *value, size_t count) {
-    add_number(f, (double)count);
-    f->hash = mix(f->hash, value, count * sizeof *value);
-}
-
-static void add_integers(fingerprint *f, const int *value, size_t count) {
-    add_number(f, (double)count);
-    f->hash = mix(f->hash, value, count * sizeof *value);
-}
-
-static void add_history(fingerprint *f, const sn_history *h) {
-    add_number(f, h ? h->count : -1);
-    if (!h) return;
-    add_numbers(f, h->time, (size_t)h->count);
-    add_numbers(f, h->value, (size_t)(h->count * h->channels));
-}
-
-static void add_memory(fingerprint *f, const sn_memory *m) {
-    add_text(f, m->law ? m->law->name : "");
-    add_number(f, m->terms);
-    add_numbers(f, m->value, SN_VALUES_MAX);
-}
-
-static void add_tissue(fingerprint *f, const sn_tissue *t) {
-    add_text(f, t->law->name);
-    add_number(f, t->terms);
-    add_numbers(f, t->value, SN_VALUES_MAX);
-    add_number(f, t->poissons_ratio);
-    add_number(f, t->density);
-    for (int k = 0; k < SN_PARTS; k++) add_memory(f, sn_tissue_memory(t, (sn_part)k));
-}
-
-static void add_mesh(fingerprint *f, const sn_mesh *m) {
-    add_numbers(f, m->node, 3 * (size_t)m->node_count);
-    add_integers(f, m->cell, 4 * (size_t)m->cell_count);
-    add_integers(f, m->region, (size_t)m->cell_count);
-    for (int s = 0; s < m->surface_count; s++)
-        add_integers(f, m->surface[s].face, 3 * (size_t)m->surface[s].face_count);
-}
-
-static void add_tool(fingerprint *f, const sn_tool *t) {
-    add_text(f, t->name);
-    add_number(f, t->kind);
-    add_number(f, t->radius);
-    add_numbers(f, t->axis, 3);
-    add_numbers(f, t->at, 3);
-    add_number(f, t->friction);
-    add_number(f, sn_tool_reach(t));
-    add_history(f, t->path);
-    add_history(f, t->turn);
-}
-
-static void add_what_acts(fingerprint *f, const sn_case *c) {
-    for (int i = 0; i < c->support_count; i++) {
-        add_number(f, c->support[i].surface);
-        for (int d = 0; d < 3; d++) add_number(f, c->support[i].fix[d]);
-    }
-    for (int i = 0; i < c->load_count; i++) {
-        const sn_load *load = &c->load[i];
-        add_number(f, load->kind);
-        add_number(f, load->surface);
-        add_numbers(f, load->point, 3);
-        add_numbers(f, load->vector, 3);
-        for (int d = 0; d < 3; d++) add_number(f, load->free[d]);
-        add_number(f, load->pressure);
-        add_history(f, load->factor);
-    }
-    for (int i = 0; i < c->tool_count; i++) add_tool(f, &c->tool[i]);
-    for (int i = 0; i < c->probe_count; i++) {
-        add_text(f, c->probe[i].name);
-        add_number(f, c->probe[i].kind);
-        add_number(f, c->probe[i].surface);
-        add_numbers(f, c->probe[i].point, 3);
-    }
-}
-
-static void add_settings(fingerprint *f, const sn_case *c) {
+// What the fingerprint of a case leaves to its user: times, settings of the engines, cuts. Rung,
+// volume and element are the model's; the number of threads changes no result.
+static uint64_t mix_settings(uint64_t hash, const sn_case *c) {
     const sn_springs_def *s = &c->springs;
     const sn_continuum_def *e = &c->continuum;
     const double numbers[] = {c->until,
@@ -122,27 +32,43 @@ static void add_settings(fingerprint *f, const sn_case *c) {
                               (double)e->analysis,
                               e->steps,
                               e->step,
+                              e->step_tolerance,
                               e->rho_infinity,
                               e->tolerance,
-                              e->memory_tolerance};
-    add_numbers(f, numbers, sizeof numbers / sizeof numbers[0]);
+                              e->memory_tolerance,
+                              (double)e->solver};
+    return sn_hash(hash, numbers, sizeof numbers);
+}
+
+static uint64_t mix_cuts(uint64_t hash, const sn_case *c) {
+    for (int k = 0; k < c->cut_count; k++) {
+        const sn_cut_def *cut = &c->cut[k];
+        const double numbers[] = {cut->at,        (double)cut->kind, cut->centre[0], cut->centre[1],
+                                  cut->centre[2], cut->radius,       cut->low[0],    cut->low[1],
+                                  cut->low[2],    cut->high[0],      cut->high[1],   cut->high[2]};
+        hash = sn_hash(hash, numbers, sizeof numbers);
+        hash = sn_hash(hash, cut->cell, (size_t)cut->cell_count * sizeof *cut->cell);
+    }
+    return hash;
+}
+
+// Columns of what is kept are called by these.
+static uint64_t mix_names(uint64_t hash, const sn_case *c) {
+    const sn_mesh *m = c->mesh;
+    for (int k = 0; k < m->surface_count; k++) hash = mix_text(hash, m->surface[k].name);
+    for (int k = 0; k < c->tool_count; k++) hash = mix_text(hash, c->tool[k].name);
+    for (int k = 0; k < c->probe_count; k++) hash = mix_text(hash, c->probe[k].name);
+    return hash;
 }
 
 void compare_key(const sn_case *c, const char *model, int mesh, const char *reference,
                  char key[17]) {
-    fingerprint f = {14695981039346656037ull};
-    add_text(&f, sn_version());
-    add_text(&f, model);
-    add_text(&f, reference);
-    add_number(&f, mesh);
-    add_mesh(&f, c->mesh);
-    if (c->has_shape) add_number(&f, c->shape.pattern);
-    for (int r = 0; r < c->mesh->region_count; r++) add_tissue(&f, &c->tissue[r]);
-    add_numbers(&f, c->fibre, 3);
-    add_numbers(&f, c->gravity, 3);
-    add_what_acts(&f, c);
-    add_settings(&f, c);
-    snprintf(key, 17, "%016llx", f.hash);
+    // what the mesh beside that of the reference, which measures its error, is made of
+    const int numbers[] = {mesh, c->has_shape ? (int)c->shape.pattern : -1};
+    uint64_t hash = mix_cuts(mix_settings(sn_case_fingerprint(c), c), c);
+    hash = sn_hash(mix_names(hash, c), numbers, sizeof numbers);
+    hash = mix_text(mix_text(mix_text(hash, sn_version()), model), reference);
+    snprintf(key, 17, "%016llx", (unsigned long long)hash);
 }
 
 //---- bytes ---------------------------------------------------------------------------------------

@@ -5,10 +5,6 @@
 
 #include "cli/compare.h"
 
-static void add_words(void *context, const char *text) {
-    sn_report_text(context, "%s", text);
-}
-
 //---- plots ---------------------------------------------------------------------------------------
 
 // a point for every case, mesh and model: error over the live cost of a simulated second
@@ -34,13 +30,8 @@ static sn_status cost_plot(sn_report *report, const compare_study *s) {
         if (count > 0)
             line[n++] = (sn_line){sn_compare_model_name(model), SN_POINTS, model, count, x, y};
     }
-    if (n > 0)
-        sn_report_plot(report, &(sn_plot){.title = "Error against live cost, all cases and meshes",
+    compare_error_plot(report, &(sn_plot){.title = "Error against live cost, all cases and meshes",
                                           .x_label = "wall time of a simulated second [s]",
-                                          .y_label = "error [%]",
-                                          .log_x = true,
-                                          .log_y = true,
-                                          .y_scale = 100,
                                           .line_count = n,
                                           .line = line,
                                           .caption = "Left of 1 s a model runs faster than the "
@@ -68,15 +59,12 @@ static void mesh_plot(sn_report *report, const compare_study *s, const compare_s
             (sn_line){sn_compare_model_name(model), SN_LINE_POINTS, model, points, x[n], y[n]};
         n++;
     }
-    if (n > 0 && s->mesh_count > 1)
-        sn_report_plot(report, &(sn_plot){.title = "Error against mesh size, median of the cases",
-                                          .x_label = "mesh: factor on the cells along an edge",
-                                          .y_label = "error [%]",
-                                          .log_x = true,
-                                          .log_y = true,
-                                          .y_scale = 100,
-                                          .line_count = n,
-                                          .line = line});
+    if (s->mesh_count > 1)
+        compare_error_plot(report,
+                           &(sn_plot){.title = "Error against mesh size, median of the cases",
+                                      .x_label = "mesh: factor on the cells along an edge",
+                                      .line_count = n,
+                                      .line = line});
 }
 
 //---- page ----------------------------------------------------------------------------------------
@@ -104,7 +92,7 @@ static sn_status fill(sn_report *report, const compare_study *s) {
     compare_summary *rows = NULL;
     sn_status status;
     sn_report_heading(report, "Which model to use");
-    compare_words(s, NULL, add_words, report);
+    compare_words(s, NULL, compare_add_words, report);
     sn_report_heading(report, "Errors and cost");
     SN_TRY_GOTO(status, add_tables(report, s));
     SN_TRY_GOTO(status, cost_plot(report, s));

@@ -84,6 +84,14 @@ static void answer_plot(sn_report *report, const compare_study *s, const compare
 
 //---- error against cost and mesh -----------------------------------------------------------------
 
+void compare_error_plot(sn_report *report, const sn_plot *plot) {
+    sn_plot error = *plot;
+    error.y_label = "error [%]";
+    error.y_scale = 100;
+    error.log_x = error.log_y = true;
+    if (error.line_count > 0) sn_report_plot(report, &error);
+}
+
 typedef struct points {
     int count[SN_COMPARE_MODELS_MAX];
     double x[SN_COMPARE_MODELS_MAX][COMPARE_MESHES_MAX],
@@ -125,15 +133,9 @@ static void error_plot(sn_report *report, const compare_case *one, abscissa what
                                   p.count[row],
                                   p.x[row],
                                   p.y[row]};
-    if (n > 0)
-        sn_report_plot(report, &(sn_plot){.title = titles[what],
-                                          .x_label = labels[what],
-                                          .y_label = "error [%]",
-                                          .log_x = true,
-                                          .log_y = true,
-                                          .y_scale = 100,
-                                          .line_count = n,
-                                          .line = line});
+    compare_error_plot(
+        report,
+        &(sn_plot){.title = titles[what], .x_label = labels[what], .line_count = n, .line = line});
 }
 
 //---- frames --------------------------------------------------------------------------------------
@@ -221,8 +223,8 @@ static void energy_plot(sn_report *report, const compare_study *s, const compare
 
 //---- page ----------------------------------------------------------------------------------------
 
-static void add_words(void *context, const char *text) {
-    sn_report_text(context, "%s", text);
+void compare_add_words(void *report, const char *text) {
+    sn_report_text(report, "%s", text);
 }
 
 static void notes(sn_report *report, const compare_study *s, const compare_case *one) {
@@ -245,7 +247,7 @@ static void notes(sn_report *report, const compare_study *s, const compare_case 
 static sn_status fill(sn_report *report, const compare_study *s, const compare_case *one) {
     compare_table table;
     sn_report_heading(report, "Which model to use");
-    compare_words(s, one, add_words, report);
+    compare_words(s, one, compare_add_words, report);
     sn_report_heading(report, "Errors and cost");
     sn_report_text(report, "Reference: %s.", one->reference.text);
     SN_TRY(compare_case_table(one, &table));

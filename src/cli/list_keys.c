@@ -381,11 +381,14 @@ static const key_row calibration[] = {
     {"regions[].force_residual", "1",
      "part of the nodal forces of even strains that no springs give; null where not fitted"},
     {"regions[].tensor_residual", "1",
-     "the same of linearly growing strains, which hold the elastic tensor"},
+     "the same of linearly growing strains, which hold the elastic tensor; on lattices of a tissue "
+     "with directions, part of its tensor that edges do not give"},
     {"regions[].scale", "1", "common factor from the held tests"},
-    {"regions[].strain", "1", "up to which the exponent was fitted"},
+    {"regions[].strain", "1", "up to which the law of the springs was fitted"},
     {"regions[].exponent", "1", "of the law of the springs"},
-    {"regions[].factor", "1", "on all stiffnesses, fitted with the exponent"},
+    {"regions[].squares", "", "of the law of the springs"},
+    {"regions[].squares[]", "1", "in tension xx, yy, zz, xy, yz, zx; in compression"},
+    {"regions[].factor", "1", "on all stiffnesses, fitted with the law"},
     {"regions[].errors", "", "of the virtual tests"},
     {"regions[].errors.*", "1",
      "held and free: stiffness at small strain over the continuum's, less 1; finite: rms of the "

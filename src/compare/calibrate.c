@@ -40,6 +40,7 @@ sn_status sn_calibration_case(const sn_case *from, sn_case **c) {
     own->shape = from->shape;
     own->has_shape = from->has_shape;
     memcpy(own->fibre, from->fibre, sizeof own->fibre);
+    memcpy(own->fibres.sheet, from->fibres.sheet, sizeof own->fibres.sheet);
     own->support_count = 1;
     own->support[0] =
         (sn_support){.surface = sn_mesh_surface(mesh, "boundary"), .fix = {true, true, true}};
@@ -141,9 +142,30 @@ static void lloyd_constants(const sn_case *c, sn_spring_set *set) {
         set->stiffness[k] *= 2 * sqrt(2.0) / 25 * youngs_modulus(&c->tissue[set->region[k]]);
 }
 
+// The springs of the net itself, with an isotropic tissue of shear modulus 1 Pa in place of those
+// that it refuses.
+static sn_status own_springs(const sn_case *c, sn_spring_set **set) {
+    sn_case *plain;
+    sn_status status;
+    *set = NULL;
+    SN_TRY(sn_calibration_case(c, &plain));
+    for (int r = 0; r < c->mesh->region_count; r++) {
+        sn_tissue *t = &plain->tissue[r];
+        if (!sn_calibration_oriented(t)) continue;
+        t->law = sn_law_find("neo-hookean");
+        t->terms = 0;
+        SN_TRY_GOTO(status, sn_tissue_set(t, "shear_modulus", 1));
+        SN_TRY_GOTO(status, sn_tissue_set(t, "bulk_modulus", 100));
+    }
+    status = sn_calibration_affine(plain, set);
+fail:
+    sn_case_destroy(plain);
+    return status;
+}
+
 static sn_status baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_set **set) {
     sn_spring_set *own;
-    SN_TRY(sn_calibration_affine(c, &own));
+    SN_TRY(own_springs(c, &own));
     sn_status status = sn_calibration_edges(c->mesh, set);
     for (int r = 0; r < own->region_count && status == SN_OK; r++)
         (*set)->exponent[r] = own->exponent[r];
@@ -167,6 +189,9 @@ sn_status sn_calibration_baseline(const sn_case *c, sn_calibration_rule rule, sn
 
 //---- the full rule -------------------------------------------------------------------------------
 
+static const double most_left = 0.05; // of a tensor that the edges of a lattice do not give: then
+                                      // second neighbours are tried
+
 // Appends the springs of a body to the set of the whole.
 static sn_status append(sn_spring_set *whole, const sn_calibration_body *body, const int *node) {
     const sn_spring_set *from = body->c->springs_given;
@@ -184,6 +209,8 @@ static sn_status append(sn_spring_set *whole, const sn_calibration_body *body, c
         stiffness[whole->count] = from->stiffness[k];
     }
     whole->exponent[body->region] = from->exponent[0];
+    memcpy(whole->square + SN_SPRING_SQUARES * body->region, from->square,
+           SN_SPRING_SQUARES * sizeof *from->square);
     return SN_OK;
 }
 
@@ -193,10 +220,48 @@ static sn_status fit_body(sn_calibration_body *body, sn_calibration_region *regi
     sn_case *c = body->c;
     sn_tissue_moduli(&c->tissue[0], &moduli);
     sn_spring_set_destroy(c->springs_given);
-    SN_TRY(sn_calibration_fit(c->mesh, &c->springs_given, region->left));
+    double K[3][3][3][3];
+    SN_TRY(sn_calibration_target(body, K));
+    for (int i = 0; i < 81; i++) K[i / 27][i / 9 % 3][i / 3 % 3][i % 3] /= moduli.shear;
+    SN_TRY(sn_calibration_fit(c->mesh, K, &c->springs_given, region->left));
     for (int k = 0; k < c->springs_given->count; k++)
         c->springs_given->stiffness[k] *= moduli.shear;
     return sn_calibration_scale(body, &region->scale);
+}
+
+// k L^2 over the volume
+static double spring_total(const sn_case *c) {
+    const sn_spring_set *set = c->springs_given;
+    double sum = 0;
+    for (int k = 0; k < set->count; k++)
+        for (int d = 0; d < 3; d++) {
+            const double *x = c->mesh->node + d;
+            const double D = x[3 * set->end[2 * k + 1]] - x[3 * set->end[2 * k]];
+            sum += set->stiffness[k] * D * D;
+        }
+    return sum / sn_mesh_volume(c->mesh);
+}
+
+// Constants of one region at small strain by the full rule, from those of the net itself.
+static sn_status full_constants(bool exact, sn_calibration_body *body,
+                                sn_calibration_region *region) {
+    sn_moduli moduli;
+    sn_tissue_moduli(&body->c->tissue[0], &moduli);
+    body->total = 15 * moduli.shear;
+    if (exact && sn_calibration_oriented(&body->c->tissue[0])) {
+        region->left[0] = 0;
+        SN_TRY(sn_calibration_classes(body, &region->left[1]));
+        body->total = spring_total(body->c);
+        exact = region->left[1] < most_left;
+    }
+    if (!exact) SN_TRY(fit_body(body, region));
+    body->c->springs_given->bulk[0] = NAN;
+    if (body->total > 9 * moduli.bulk)
+        return sn_fail(SN_E_UNSUPPORTED,
+                       "tissue %s: central springs for it bring a bulk modulus of %g Pa, it has %g "
+                       "Pa; use model coupled",
+                       body->c->tissue[0].name, body->total / 9, moduli.bulk);
+    return SN_OK;
 }
 
 /// What all regions share.
@@ -205,11 +270,11 @@ typedef struct job {
     sn_calibration_rule rule;
     bool exact; // the net's own springs have an isotropic tensor
     double strain, share[SN_CALIBRATION_KINDS];
-    const sn_spring_set *rule_set; // of the rule; of the net itself for the full one
-    sn_spring_set *set;            // result of the full rule
+    sn_spring_set *rule_set; // of the rule; of the net itself for the full one
+    sn_spring_set *set;      // result of the full rule
 } job;
 
-static sn_status do_region(const job *j, int r, sn_calibration_region *region) {
+static sn_status do_region(job *j, int r, sn_calibration_region *region) {
     const sn_mesh *mesh = j->own->mesh;
     const bool full = j->rule == SN_CALIBRATION_FULL;
     sn_calibration_body body = {0};
@@ -223,13 +288,17 @@ static sn_status do_region(const job *j, int r, sn_calibration_region *region) {
     SN_TRY_GOTO(status, sn_calibration_body_open(j->own, r, &body));
     for (int i = 0; i < mesh->node_count; i++)
         if (body.number[i] >= 0) node[body.number[i]] = i;
-    if (full && !j->exact)
-        SN_TRY_GOTO(status, fit_body(&body, region));
-    else
-        SN_TRY_GOTO(status, sn_calibration_body_take(&body, j->rule_set));
-    if (full) body.c->springs_given->bulk[0] = NAN;
+    SN_TRY_GOTO(status, sn_calibration_body_take(&body, j->rule_set));
+    if (full) SN_TRY_GOTO(status, full_constants(j->exact, &body, region));
     SN_TRY_GOTO(status, sn_calibration_small(&body, region));
-    SN_TRY_GOTO(status, sn_calibration_finite(&body, j->share, full, region));
+    // the net's own rule, which baselines have their exponent from, refuses such tissues
+    const bool own_law = !sn_calibration_oriented(&j->own->tissue[r]);
+    SN_TRY_GOTO(status, sn_calibration_finite(&body, j->share,
+                                              full      ? SN_CALIBRATION_FIT_LAW
+                                              : own_law ? SN_CALIBRATION_FIT_NOTHING
+                                                        : SN_CALIBRATION_FIT_EXPONENT,
+                                              region));
+    if (!full) j->rule_set->exponent[r] = body.c->springs_given->exponent[0];
     if (full) SN_TRY_GOTO(status, append(j->set, &body, node));
 fail:
     sn_calibration_body_close(&body);
@@ -246,8 +315,8 @@ static void tell(const sn_output *progress, double done, const char *text) {
 static sn_status rule_springs(job *j, sn_spring_set **set) {
     if (j->rule == SN_CALIBRATION_UNIFORM || j->rule == SN_CALIBRATION_LLOYD)
         return baseline(j->own, j->rule, set);
-    SN_TRY(sn_calibration_affine(j->own, set));
-    if (j->rule != SN_CALIBRATION_FULL) return SN_OK;
+    if (j->rule != SN_CALIBRATION_FULL) return sn_calibration_affine(j->own, set);
+    SN_TRY(own_springs(j->own, set));
     j->exact = sn_springs_lattice(j->own);
     return sn_spring_set_create(0, j->own->mesh->region_count, &j->set);
 }
@@ -272,6 +341,17 @@ static void count_springs(const int *edge, int edges, sn_calibration *out) {
     }
 }
 
+static sn_status check_fibres(const sn_case *c) {
+    for (int r = 0; r < c->mesh->region_count; r++)
+        if (sn_calibration_oriented(&c->tissue[r]) && c->fibres.rule != SN_FIBRES_ALIKE)
+            return sn_fail(SN_E_UNSUPPORTED,
+                           "calibrate: tissue %s has fibres that turn from cell to cell; springs "
+                           "get constants by direction, the same everywhere; use model coupled or "
+                           "smoothed",
+                           c->tissue[r].name);
+    return SN_OK;
+}
+
 sn_status sn_calibrate_to(const sn_case *c, sn_calibration_rule rule, double strain,
                           const sn_output *progress, sn_calibration *out) {
     job j = {.rule = rule, .strain = strain, .share = {1, 1, 1}};
@@ -283,6 +363,7 @@ sn_status sn_calibrate_to(const sn_case *c, sn_calibration_rule rule, double str
     if (!(strain >= 0) || strain > 2)
         return sn_fail(SN_E_RANGE, "calibrate: strain is %g, expected more than 0 and at most 2",
                        strain);
+    SN_TRY(check_fibres(c));
     SN_TRY_GOTO(status, sn_calibration_case(c, &own));
     j.own = own;
     const int regions = own->mesh->region_count;

@@ -2,22 +2,30 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Under a deformation F that is the same everywhere a spring of direction n has the stretch
-// lambda = |F n|, so that a net stores 1/V sum k L^2 phi(lambda), phi' = t: (exp(B x) - 1)/B in
-// tension, x = lambda - 1, and (lambda - 1/lambda^2)/3 in compression; the volume term adds kappa/2
-// (J - 1)^2. Paths are stretching and compressing along x y z with the sides free, and simple
-// shear. B and a factor on all stiffnesses bring the stress closest to the tissue's, each path
-// measured by its largest stress and weighed by what the case does. The sides of net and tissue
-// find their own places: stretched springs pull on the volume too, which no tissue with a
-// deviatoric law does, and where kappa is small that shows in the force. Of a uniaxial law only its
-// curve is known: stretching.
+// lambda = |F n|, so that a net stores 1/V sum k L^2 phi(lambda), phi' = t, with x = lambda - 1
+//     t = (exp(B x) - 1)/B + x (exp(C_n x^2) - 1)        in tension,
+//     t = (lambda - 1/lambda^2)/3 + x (exp(c x^2) - 1)   in compression;
+// the volume term adds kappa/2 (J - 1)^2. C_n = n.C n has the axes of the material; it is one
+// number for isotropic tissues. Paths are stretching and compressing along x y z with the sides
+// free, alike in both directions, and simple shear. B, C, c and a factor on all stiffnesses bring
+// the stress closest to the tissue's, each path measured by its largest stress and weighed by what
+// the case does; a small price on B, C and c keeps those near 0 that the strain is too small for.
+// The least squares are found by Levenberg's and Marquardt's method, from the best B alone and
+// from a law of squares alone. The sides of net and tissue find their own places: stretched springs
+// pull on the volume too, which no tissue with a deviatoric law does, and where kappa is small that
+// shows in the force. Of a uniaxial law only its curve is known, stretching, and only B is fitted.
 //
-// Springs enter by their directions only; those that differ by a few degrees are taken together.
+// Springs of a lattice enter by their directions; those that differ by a few degrees are taken
+// together. Springs that were fitted at every node enter as what they were fitted to: the sum over
+// a body that is not straight mixes directions that no point of it has.
 #include <math.h>
 #include <string.h>
 
 #include "compare/calibrate.h"
 
-enum { GRID = 12, BINS = 3 * GRID * GRID, LEVELS = 6, PATHS = 9, FACTORS = 3 };
+enum { GRID = 12, BINS = 3 * GRID * GRID, LEVELS = 6, PATHS = 9, VALUES = 6, TURNS = 60 };
+#define RESIDUALS (PATHS * LEVELS + PATHS + VALUES)
+enum { FACTOR, EXPONENT, UP, DOWN = UP + 3 }; // what is fitted
 static const char *const path_name[PATHS] = {"stretch x",  "stretch y",  "stretch z",
                                              "compress x", "compress y", "compress z",
                                              "shear xy",   "shear yz",   "shear zx"};
@@ -25,6 +33,11 @@ static const char *const path_name[PATHS] = {"stretch x",  "stretch y",  "stretc
 typedef struct finite_fit {
     int bins;
     double n[BINS][3], weight[BINS]; // k L^2 over the volume
+    double square[BINS][3];          // n in the axes of the material, squared
+    double axes[9];
+    bool oriented;        // C differs by direction
+    int from, to;         // of the values that are fitted
+    double value[VALUES]; // of the law
     int path_count;
     double share[SN_CALIBRATION_KINDS];               // weights of three paths each
     double s[LEVELS];                                 // strains
@@ -46,6 +59,15 @@ static int bin_of(const double n[3]) {
         at[k] = cell < 0 ? 0 : cell >= GRID ? GRID - 1 : cell;
     }
     return (axis * GRID + at[0]) * GRID + at[1];
+}
+
+static void put_direction(finite_fit *f, const double n[3], double weight) {
+    for (int d = 0; d < 3; d++) {
+        const double *q = f->axes + 3 * d, m = q[0] * n[0] + q[1] * n[1] + q[2] * n[2];
+        f->n[f->bins][d] = n[d];
+        f->square[f->bins][d] = m * m;
+    }
+    f->weight[f->bins++] = weight;
 }
 
 // Weights add up to `total`; 0: to what they are.
@@ -74,23 +96,25 @@ static void gather_directions(const sn_case *c, double total, finite_fit *f) {
         double size =
             sqrt(f->n[b][0] * f->n[b][0] + f->n[b][1] * f->n[b][1] + f->n[b][2] * f->n[b][2]);
         if (!(f->weight[b] > 0) || !(size > 0)) continue;
-        for (int d = 0; d < 3; d++) f->n[f->bins][d] = f->n[b][d] / size;
-        f->weight[f->bins++] =
-            total > 0 ? total * f->weight[b] / all : f->weight[b] / sn_mesh_volume(c->mesh);
+        const double n[3] = {f->n[b][0] / size, f->n[b][1] / size, f->n[b][2] / size};
+        put_direction(
+            f, n, total > 0 ? total * f->weight[b] / all : f->weight[b] / sn_mesh_volume(c->mesh));
     }
 }
 
 //---- stresses ------------------------------------------------------------------------------------
 
-static double tension(double B, double lambda) {
-    const double x = lambda - 1;
-    if (x < 0) return (lambda - 1 / (lambda * lambda)) / 3;
-    return fabs(B * x) < 1e-12 ? x : expm1(B * x) / B;
+static double tension(const double *value, const double square[3], double lambda) {
+    const double x = lambda - 1, B = value[EXPONENT];
+    if (x < 0)
+        return (lambda - 1 / (lambda * lambda)) / 3 + x * expm1(fmin(value[DOWN] * x * x, 60));
+    double C = 0;
+    for (int d = 0; d < 3; d++) C += value[UP + d] * square[d];
+    return (fabs(B * x) < 1e-12 ? x : expm1(B * x) / B) + x * expm1(fmin(C * x * x, 60));
 }
 
 // diagonal of the nominal stress of springs, and P_ij for shear along i
-static void spring_stress(const finite_fit *f, double B, const double F[9], int i, int j,
-                          double P[4]) {
+static void spring_stress(const finite_fit *f, const double F[9], int i, int j, double P[4]) {
     memset(P, 0, 4 * sizeof *P);
     for (int b = 0; b < f->bins; b++) {
         const double *n = f->n[b];
@@ -99,35 +123,43 @@ static void spring_stress(const finite_fit *f, double B, const double F[9], int 
             x[d] = F[3 * d] * n[0] + F[3 * d + 1] * n[1] + F[3 * d + 2] * n[2];
             l2 += x[d] * x[d];
         }
-        const double lambda = sqrt(l2), t = f->weight[b] * tension(B, lambda) / lambda;
+        const double lambda = sqrt(l2);
+        const double t = f->weight[b] * tension(f->value, f->square[b], lambda) / lambda;
         for (int d = 0; d < 3; d++) P[d] += t * x[d] * n[d];
         P[3] += t * x[i] * n[j];
     }
 }
 
-// the same of a solid law, without its volume stress: P = F S
-static void solid_stress(const sn_tissue *t, const double F[9], int i, int j, double P[4]) {
+// the same of a solid law, without its volume stress: P = F Q^T S Q
+static void solid_stress(const finite_fit *f, const sn_tissue *t, const double F[9], int i, int j,
+                         double P[4]) {
     static const int at[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-    double E[6], S[6];
+    double G[9], E[6], S[6]; // G = F Q^T: strain in the axes of the material
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            G[3 * a + b] = 0;
+            for (int k = 0; k < 3; k++) G[3 * a + b] += F[3 * a + k] * f->axes[3 * b + k];
+        }
     for (int a = 0; a < 3; a++)
         for (int b = a; b < 3; b++) {
             double C = -(double)(a == b);
-            for (int k = 0; k < 3; k++) C += F[3 * k + a] * F[3 * k + b];
+            for (int k = 0; k < 3; k++) C += G[3 * k + a] * G[3 * k + b];
             E[at[a][b]] = 0.5 * C;
         }
     sn_law_solid(t->law, t->value, t->terms, 1, E, NULL, S, NULL);
     memset(P, 0, 4 * sizeof *P);
-    for (int k = 0; k < 3; k++) {
-        for (int d = 0; d < 3; d++) P[d] += F[3 * d + k] * S[at[k][d]];
-        P[3] += F[3 * i + k] * S[at[k][j]];
-    }
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            for (int d = 0; d < 3; d++) P[d] += G[3 * d + a] * S[at[a][b]] * f->axes[3 * b + d];
+            P[3] += G[3 * i + a] * S[at[a][b]] * f->axes[3 * b + j];
+        }
 }
 
 /// A body that is stretched: springs, or a tissue where there is one.
 typedef struct stretched {
     const finite_fit *f;
     const sn_tissue *tissue; ///< Nullable
-    double B, factor, bulk;
+    double factor, bulk;
 } stretched;
 
 // Nominal stress along axis i at the stretch a with sides of stretch l; *side that across, *volume
@@ -140,9 +172,9 @@ static double stress_at(const stretched *b, int i, double a, double l, double *s
     F[4 * i] = a;
     F[4 * j] = F[4 * k] = l;
     if (b->tissue)
-        solid_stress(b->tissue, F, i, j, P);
+        solid_stress(b->f, b->tissue, F, i, j, P);
     else
-        spring_stress(b->f, b->B, F, i, j, P);
+        spring_stress(b->f, F, i, j, P);
     *side = b->factor * 0.5 * (P[j] + P[k]) + pull * a * l;
     *volume = pull * l * l;
     return P[i];
@@ -169,14 +201,14 @@ static double stretch_of(int path, double s) {
     return path < 3 ? 1 + s : 1 / (1 + s);
 }
 
-static double sheared(const finite_fit *f, const sn_tissue *tissue, double B, int i, double s) {
+static double sheared(const finite_fit *f, const sn_tissue *tissue, int i, double s) {
     double F[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, P[4];
     const int j = (i + 1) % 3;
     F[3 * i + j] = s;
     if (tissue)
-        solid_stress(tissue, F, i, j, P);
+        solid_stress(f, tissue, F, i, j, P);
     else
-        spring_stress(f, B, F, i, j, P);
+        spring_stress(f, F, i, j, P);
     return P[3];
 }
 
@@ -193,8 +225,7 @@ static void set_tissue(const sn_tissue *t, double strain, finite_fit *f) {
             if (uniaxial)
                 sn_law_uniaxial(t->law, t->value, t->terms, 1, &a, NULL, to, NULL);
             else
-                *to = p < 6 ? free_stress(&body, p % 3, a, &volume)
-                            : sheared(f, t, 0, p % 3, f->s[i]);
+                *to = p < 6 ? free_stress(&body, p % 3, a, &volume) : sheared(f, t, p % 3, f->s[i]);
             *to += volume;
             f->largest[p] = fmax(f->largest[p], fabs(*to));
         }
@@ -203,76 +234,149 @@ static void set_tissue(const sn_tissue *t, double strain, finite_fit *f) {
 
 //---- the fit -------------------------------------------------------------------------------------
 
-// stresses of the net with a factor on its springs; the volume term has what they lack
-static void set_net(finite_fit *f, double B, double factor) {
+// stresses of the net with the values of its law; the volume term has what springs lack
+static void set_net(finite_fit *f) {
+    const double factor = f->value[FACTOR];
     const stretched net = {
-        .f = f, .B = B, .factor = factor, .bulk = fmax(f->bulk - factor * f->own_bulk, 0.0)};
+        .f = f, .factor = factor, .bulk = fmax(f->bulk - factor * f->own_bulk, 0.0)};
     for (int p = 0; p < f->path_count; p++)
         for (int i = 0; i < LEVELS; i++) {
             f->volume[p][i] = 0;
             f->net[p][i] = p < 6
                                ? free_stress(&net, p % 3, stretch_of(p, f->s[i]), &f->volume[p][i])
-                               : sheared(f, NULL, B, p % 3, f->s[i]);
+                               : sheared(f, NULL, p % 3, f->s[i]);
         }
 }
 
-// with the slope at rest as a point of each path: the factor is its error
-static double sum_squares(const finite_fit *f, double factor) {
+/// Where each value may be, and the price of it.
+typedef struct bound {
+    double low, high, price;
+} bound;
+static const bound bounds[VALUES] = {{0.1, 10, 0},   {-10, 200, 1e-3}, {0, 500, 2e-4},
+                                     {0, 500, 2e-4}, {0, 500, 2e-4},   {0, 500, 2e-4}};
+
+// number v of the fit: which value, of an isotropic tissue all three of C
+static void set_value(finite_fit *f, int v, double to) {
+    static const int alike[] = {FACTOR, EXPONENT, UP, DOWN};
+    const int at = f->oriented ? v : alike[v];
+    f->value[at] = fmin(fmax(to, bounds[at].low), bounds[at].high);
+    if (at == UP && !f->oriented) f->value[UP + 1] = f->value[UP + 2] = f->value[UP];
+}
+
+static double get_value(const finite_fit *f, int v) {
+    static const int alike[] = {FACTOR, EXPONENT, UP, DOWN};
+    return f->value[f->oriented ? v : alike[v]];
+}
+
+// Differences over the largest stress of each path; the modulus at rest as one point more of each;
+// prices. Returns the sum of their squares.
+static double residuals(finite_fit *f, double *r) {
     double sum = 0;
-    for (int p = 0; p < f->path_count; p++)
-        for (int i = 0; i < LEVELS; i++) {
-            const double r = factor * f->net[p][i] + f->volume[p][i] - f->stress[p][i];
-            sum += f->share[p / 3] * r * r / (f->largest[p] * f->largest[p]);
-        }
-    for (int p = 0; p < f->path_count; p++) sum += f->share[p / 3] * (factor - 1) * (factor - 1);
-    return sum;
-}
-
-// Sum of squares over the paths, each over its largest stress, with the modulus at rest as one
-// point more of each; *factor gets the best one, which the sides depend on.
-static double misfit(finite_fit *f, double B, double *factor) {
-    *factor = 1;
-    for (int turn = 0; turn < FACTORS; turn++) {
-        double top = 0, bottom = 0;
-        set_net(f, B, *factor);
-        for (int p = 0; p < f->path_count; p++)
-            for (int i = 0; i < LEVELS; i++) {
-                const double w = f->share[p / 3] / (f->largest[p] * f->largest[p]);
-                top += w * f->net[p][i] * (f->stress[p][i] - f->volume[p][i]);
-                bottom += w * f->net[p][i] * f->net[p][i];
-            }
-        for (int p = 0; p < f->path_count; p++) {
-            top += f->share[p / 3];
-            bottom += f->share[p / 3];
-        }
-        *factor = fmin(fmax(top / bottom, 0.1), 10);
+    set_net(f);
+    memset(r, 0, RESIDUALS * sizeof *r);
+    for (int p = 0; p < f->path_count; p++) {
+        const double w = sqrt(f->share[p / 3]);
+        for (int i = 0; i < LEVELS; i++)
+            r[p * LEVELS + i] =
+                w * (f->value[FACTOR] * f->net[p][i] + f->volume[p][i] - f->stress[p][i]) /
+                f->largest[p];
+        r[PATHS * LEVELS + p] = w * (f->value[FACTOR] - 1);
     }
-    const double sum = sum_squares(f, *factor);
+    for (int v = 0; v < VALUES; v++) r[PATHS * LEVELS + PATHS + v] = bounds[v].price * f->value[v];
+    for (int k = 0; k < RESIDUALS; k++) sum += r[k] * r[k];
     return isfinite(sum) ? sum : (double)INFINITY;
 }
 
-// a scan finds the valley, golden section its bottom
-static double best_exponent(finite_fit *f, double *factor) {
-    const double low = -10, high = 200, width = 2.5, golden = 0.61803398874989485;
-    double best = low, least = (double)INFINITY, unused;
-    for (double B = low; B <= high; B += width) {
-        const double m = misfit(f, B, &unused);
-        if (m < least) {
-            least = m;
+// x <- A^-1 x by Gauss's method, A symmetric and positive definite
+static void solve(double A[VALUES][VALUES], double *x, int n) {
+    for (int p = 0; p < n; p++)
+        for (int i = p + 1; i < n; i++) {
+            const double factor = A[i][p] / A[p][p];
+            for (int j = p; j < n; j++) A[i][j] -= factor * A[p][j];
+            x[i] -= factor * x[p];
+        }
+    for (int i = n - 1; i >= 0; i--) {
+        for (int j = i + 1; j < n; j++) x[i] -= A[i][j] * x[j];
+        x[i] /= A[i][i];
+    }
+}
+
+// A and b of the normal equations at the present values, slopes by differences
+static void normal_equations(finite_fit *f, const double *r, double A[VALUES][VALUES], double *b) {
+    double slope[VALUES][RESIDUALS];
+    for (int v = f->from; v < f->to; v++) {
+        const double here = get_value(f, v), step = 1e-5 * (1 + fabs(here));
+        set_value(f, v, here + step);
+        residuals(f, slope[v]);
+        for (int k = 0; k < RESIDUALS; k++) slope[v][k] = (slope[v][k] - r[k]) / step;
+        set_value(f, v, here);
+    }
+    for (int v = f->from; v < f->to; v++) {
+        b[v - f->from] = 0;
+        for (int k = 0; k < RESIDUALS; k++) b[v - f->from] -= slope[v][k] * r[k];
+        for (int w = f->from; w < f->to; w++) {
+            double *to = &A[v - f->from][w - f->from];
+            *to = 0;
+            for (int k = 0; k < RESIDUALS; k++) *to += slope[v][k] * slope[w][k];
+        }
+    }
+}
+
+// from the present values; returns the sum of squares that it comes to
+static double improve(finite_fit *f) {
+    double r[RESIDUALS], A[VALUES][VALUES], M[VALUES][VALUES], b[VALUES], x[VALUES];
+    double sum = residuals(f, r), damping = 1e-3;
+    const int n = f->to - f->from;
+    for (int turn = 0; turn < TURNS && isfinite(sum); turn++) {
+        const double last = sum;
+        double before[VALUES];
+        memcpy(before, f->value, sizeof before);
+        normal_equations(f, r, A, b);
+        for (; damping < 1e8; damping *= 4) {
+            memcpy(M, A, sizeof M);
+            memcpy(x, b, sizeof x);
+            for (int v = 0; v < n; v++) M[v][v] += damping * A[v][v] + 1e-30;
+            solve(M, x, n);
+            for (int v = 0; v < n; v++) set_value(f, f->from + v, get_value(f, f->from + v) + x[v]);
+            sum = residuals(f, r);
+            if (sum < last) break;
+            memcpy(f->value, before, sizeof before);
+        }
+        if (!(sum < last)) { // no way down
+            sum = residuals(f, r);
+            break;
+        }
+        damping *= 0.1;
+        if (last - sum < 1e-9 * sum) break;
+    }
+    return sum;
+}
+
+// the exponent alone, by a scan
+static void scan_exponent(finite_fit *f) {
+    double best = 0, least = (double)INFINITY, r[RESIDUALS];
+    for (double B = bounds[EXPONENT].low; B <= bounds[EXPONENT].high; B += 2.5) {
+        f->value[EXPONENT] = B;
+        const double sum = residuals(f, r);
+        if (sum < least) {
+            least = sum;
             best = B;
         }
     }
-    double a = best - width, b = best + width;
-    while (b - a > 1e-6 * (1 + fabs(a))) {
-        const double left = b - golden * (b - a), right = a + golden * (b - a);
-        if (misfit(f, left, &unused) < misfit(f, right, &unused))
-            b = right;
-        else
-            a = left;
+    f->value[EXPONENT] = best;
+}
+
+static void fit_values(finite_fit *f) {
+    static const double squares[VALUES] = {1, 0, 5, 5, 5, 5};
+    double best[VALUES];
+    scan_exponent(f);
+    const double sum = improve(f);
+    memcpy(best, f->value, sizeof best);
+    if (f->to > UP) {
+        memcpy(f->value, squares, sizeof squares);
+        if (improve(f) > sum) memcpy(f->value, best, sizeof best);
     }
-    misfit(f, 0.5 * (a + b), factor);
-    set_net(f, 0.5 * (a + b), *factor);
-    return 0.5 * (a + b);
+    set_net(f);
 }
 
 static void note_errors(const finite_fit *f, sn_calibration_region *region) {
@@ -286,27 +390,57 @@ static void note_errors(const finite_fit *f, sn_calibration_region *region) {
     }
 }
 
-sn_status sn_calibration_finite(sn_calibration_body *body, const double *share, bool fit,
-                                sn_calibration_region *region) {
+// the law that a set has; C of one that was not fitted is 0
+static void take_values(const sn_spring_set *set, finite_fit *f) {
+    f->value[FACTOR] = 1;
+    f->value[EXPONENT] = set->exponent[0];
+}
+
+// C = sum of C_a q_a q_a over the axes q of the material
+static void give_values(const finite_fit *f, sn_spring_set *set) {
+    static const int at[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
+    set->exponent[0] = f->value[EXPONENT];
+    for (int k = 0; k < 6; k++) {
+        set->square[k] = 0;
+        for (int a = 0; a < 3; a++)
+            set->square[k] +=
+                f->value[UP + a] * f->axes[3 * a + at[k][0]] * f->axes[3 * a + at[k][1]];
+    }
+    set->square[6] = f->value[DOWN];
+    for (int k = 0; k < set->count; k++) set->stiffness[k] *= f->value[FACTOR];
+}
+
+sn_status sn_calibration_finite(sn_calibration_body *body, const double *share,
+                                sn_calibration_finite_fit fit, sn_calibration_region *region) {
     const sn_tissue *tissue = &body->c->tissue[0];
+    const bool full = fit == SN_CALIBRATION_FIT_LAW,
+               uniaxial = tissue->law->kind == SN_LAW_UNIAXIAL;
     sn_spring_set *set = body->c->springs_given;
     sn_moduli moduli;
     finite_fit *f = sn_alloc(1, sizeof *f);
     if (!f) return SN_E_MEMORY;
     sn_tissue_moduli(tissue, &moduli);
-    gather_directions(body->c, fit ? 15 * moduli.shear : 0, f); // less what relaxes
+    sn_case_axes(body->c, f->axes);
+    f->oriented = sn_calibration_oriented(tissue);
+    f->from = full ? FACTOR : EXPONENT;
+    f->to = !full || uniaxial ? UP : f->oriented ? VALUES : VALUES - 2;
+    if (full && body->rays > 0)
+        for (int k = 0; k < body->rays; k++) put_direction(f, body->ray[k].n, body->ray[k].weight);
+    else
+        gather_directions(body->c, full ? body->total : 0, f);
     for (int b = 0; b < f->bins; b++) f->own_bulk += f->weight[b] / 9;
     f->bulk = moduli.bulk;
     set_tissue(tissue, region->strain, f);
     memcpy(f->share, share, sizeof f->share);
-    region->factor = 1;
-    if (fit) {
-        set->exponent[0] = best_exponent(f, &region->factor);
-        for (int k = 0; k < set->count; k++) set->stiffness[k] *= region->factor;
-    } else {
-        set_net(f, set->exponent[0], 1);
-    }
-    region->exponent = set->exponent[0];
+    take_values(set, f);
+    if (fit == SN_CALIBRATION_FIT_NOTHING)
+        set_net(f);
+    else
+        fit_values(f);
+    region->factor = f->value[FACTOR];
+    region->exponent = f->value[EXPONENT];
+    if (fit != SN_CALIBRATION_FIT_NOTHING) give_values(f, set);
+    memcpy(region->square, set->square, sizeof region->square);
     note_errors(f, region);
     sn_free(f);
     return isfinite(region->exponent) && region->factor > 0

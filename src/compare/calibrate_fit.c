@@ -8,12 +8,12 @@
 // stiffness k, length L and direction n (away from the node) answer with the forces
 //     f_i = -(sum k L n_i n_j n_k) E_jk              for u_j = E_jk xi_k,
 //     f_i = -(sum k L^2 n_i n_k n_j n_l)             for u_k = xi_j xi_l,
-// the continuum with lambda = mu = 1, by the shape function N of the node, with
-//     f_i = (A_i d_jk + A_j d_ik + A_k d_ij) E_jk,   A_i = integral of dN/dx_i,
-//     f_i = d_kj T_il + d_ik T_jl + d_ij T_kl + d_kl T_ij + d_ik T_lj + d_il T_kj,
-//                                                    T_ml = integral of dN/dx_m xi_l.
-// Inside, A = 0 and T = -V_a d: moments of third order must vanish, those of fourth order be
-// isotropic. At the surface A and T are the consistent tractions. What springs do is symmetric in
+// the continuum of a tensor K that is symmetric in all indices (lambda = mu where it is isotropic),
+// by the shape function N of the node, with
+//     f_i = K_ijkm A_m E_jk,                         A_m = integral of dN/dx_m,
+//     f_i = K_imkj T_ml + K_imkl T_mj,               T_ml = integral of dN/dx_m xi_l.
+// Inside, A = 0 and T = -V_a d: moments of third order must vanish, those of fourth order be those
+// of K. At the surface A and T are the consistent tractions. What springs do is symmetric in
 // all indices, so that only the symmetric part of a target can be met: 10 + 15 numbers a node. The
 // fourth moments of all nodes add up to the elastic tensor of the net.
 //
@@ -27,7 +27,8 @@
 
 enum { THIRD = 10, FOURTH = 15, MOMENTS = THIRD + FOURTH, SWEEPS = 500 };
 static const double weight[2] = {0.5, 1.0}; // of third and fourth moments
-static const double cost = 0.05;            // of a second neighbour, for a column of norm 1
+static const double cost = 0.05;            // of a second neighbour, for a column of norm 1 and
+                                            // the tensor of a shear modulus of 1
 static const double reach = 2.0;            // longest second neighbour, of the mean edge
 static const double settled = 1e-5;         // gain of a sweep, relative
 
@@ -156,20 +157,17 @@ static void set_column(const fit *f, column *c) {
 }
 
 // moments of the continuum at a node, from A and the symmetric part S of T
-static void node_target(const double A[3], double S[3][3], double *t) {
+static void node_target(double K[3][3][3][3], const double A[3], double S[3][3], double *t) {
     for (int m = 0; m < MOMENTS; m++) {
         int i[4], n = 0, order = m < THIRD ? 3 : 4;
         double sum = 0;
         for (int d = 0; d < 3; d++)
             for (int k = 0; k < power[m][d]; k++) i[n++] = d;
-        for (int p = 0; p < order; p++)
-            for (int q = p + 1; q < order; q++) {
-                int rest[2] = {0}, left = 0;
-                if (i[p] != i[q]) continue;
-                for (int r = 0; r < order; r++)
-                    if (r != p && r != q) rest[left++] = i[r];
-                sum += order == 3 ? A[rest[0]] : S[rest[0]][rest[1]];
-            }
+        for (int l = 0; l < 3; l++) {
+            if (order == 3) sum += K[i[0]][i[1]][i[2]][l] * A[l];
+            for (int p = 0; p < 4 && order == 4; p++)
+                sum += 0.5 * S[l][i[p]] * K[i[(p + 1) % 4]][i[(p + 2) % 4]][i[(p + 3) % 4]][l];
+        }
         t[m] = -sum;
     }
 }
@@ -205,7 +203,7 @@ static void add_cell(const sn_mesh *mesh, int e, double *sums) {
     }
 }
 
-static sn_status set_system(fit *f) {
+static sn_status set_system(fit *f, double K[3][3][3][3]) {
     const size_t nodes = (size_t)f->mesh->node_count;
     double *sums = sn_alloc(nodes * 13, sizeof *sums);
     f->size = sn_alloc(nodes, sizeof *f->size);
@@ -220,7 +218,7 @@ static sn_status set_system(fit *f) {
         const double *A = sums + 13 * a, *T = A + 3, h = f->size[a] = cbrt(A[12]);
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++) S[i][j] = 0.5 * (T[3 * i + j] + T[3 * j + i]);
-        node_target(A, S, t);
+        node_target(K, A, S, t);
         for (int m = 0; m < MOMENTS; m++)
             t[m] *= m < THIRD ? weight[0] / (h * h) : weight[1] / (h * h * h);
     }
@@ -281,13 +279,14 @@ static void descend(fit *f) {
     }
 }
 
-sn_status sn_calibration_fit(const sn_mesh *mesh, sn_spring_set **set, double left[2]) {
+sn_status sn_calibration_fit(const sn_mesh *mesh, double K[3][3][3][3], sn_spring_set **set,
+                             double left[2]) {
     fit f = {.mesh = mesh};
     double before[2], after[2];
     int count = 0;
     *set = NULL;
     sn_status status = find_candidates(&f);
-    if (status == SN_OK) status = set_system(&f);
+    if (status == SN_OK) status = set_system(&f, K);
     if (status != SN_OK) goto fail;
     left_over(&f, before);
     descend(&f);

@@ -69,6 +69,8 @@ sn_status sn_calibration_strain(const sn_case *c, double *strain,
     sn_case quick = *c; // everything is borrowed
     quick.springs_given = NULL;
     quick.springs.rung = SN_RUNG_CENTRAL;
+    for (int r = 0; r < c->mesh->region_count; r++) // of which the net's own rule has no springs
+        if (sn_calibration_oriented(&c->tissue[r])) quick.springs.rung = SN_RUNG_COUPLED;
     quick.springs.volume = true;
     quick.springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     quick.springs.step = 0;

@@ -53,6 +53,7 @@ sn_status sn_calibration_body_open(const sn_case *c, int region, sn_calibration_
     sn_case part = {.mesh = mesh, .tissue = &c->tissue[region], .shape = c->shape};
     part.has_shape = c->has_shape && c->mesh->region_count == 1;
     memcpy(part.fibre, c->fibre, sizeof part.fibre);
+    part.fibres = c->fibres;
     status = sn_calibration_case(&part, &body->c);
 fail:
     sn_mesh_destroy(mesh);
@@ -74,6 +75,8 @@ sn_status sn_calibration_body_take(sn_calibration_body *body, const sn_spring_se
     SN_TRY(sn_spring_set_create(count, 1, &body->c->springs_given));
     sn_spring_set *to = body->c->springs_given;
     to->exponent[0] = set->exponent[body->region];
+    memcpy(to->square, set->square + SN_SPRING_SQUARES * body->region,
+           SN_SPRING_SQUARES * sizeof *to->square);
     to->bulk[0] = set->bulk[body->region];
     for (int k = 0, n = 0; k < set->count; k++) {
         if (set->region[k] != body->region) continue;
@@ -99,9 +102,11 @@ static sn_status milder(const sn_tissue *tissue, sn_tissue *out) {
     sn_moduli moduli;
     sn_tissue_moduli(tissue, &moduli);
     *out = *tissue;
-    out->law = sn_law_find("neo-hookean");
-    out->terms = 0;
-    SN_TRY(sn_tissue_set(out, "shear_modulus", moduli.shear));
+    if (!sn_calibration_oriented(tissue)) {
+        out->law = sn_law_find("neo-hookean");
+        out->terms = 0;
+        SN_TRY(sn_tissue_set(out, "shear_modulus", moduli.shear));
+    }
     return sn_tissue_set(out, "bulk_modulus", fmin(moduli.bulk, 29.0 / 3.0 * moduli.shear));
 }
 

@@ -1,14 +1,11 @@
-// The sparse matrix of the free unknowns: which entries there are, where each cell adds, the
-// values. SPDX-License-Identifier: Apache-2.0
+// The sparse matrix of the free unknowns: its entries, where each cell adds, the values.
+// SPDX-License-Identifier: Apache-2.0
 #include "continuum/pattern.h"
 
 #include <limits.h>
 #include <stdlib.h>
 
-static int compare_int(const void *a, const void *b) {
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
+#include "base/sort.h"
 
 // The blocks of each rank: its nodes, then its pressures.
 static sn_status order_blocks(const sn_fe_space *s, sn_fe_pattern *p) {

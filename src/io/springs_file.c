@@ -39,12 +39,22 @@ static void put_name(sn_buffer *b, const char *name) {
     if (quoted) sn_buffer_text(b, "\"");
 }
 
+static void put_squares(sn_buffer *b, const char *region, const double *q) {
+    bool any = false;
+    for (int k = 0; k < SN_SPRING_SQUARES; k++) any = any || q[k] != 0;
+    if (!any) return;
+    sn_buffer_print(b, "# squares of %s:", region);
+    for (int k = 0; k < SN_SPRING_SQUARES; k++) sn_buffer_print(b, " %.17g", q[k]);
+    sn_buffer_text(b, "\n");
+}
+
 sn_status sn_springs_write(const char *path, const sn_mesh *mesh, const sn_spring_set *set,
                            const char *comment) {
     sn_buffer b = {0};
     if (comment) sn_buffer_print(&b, "# %s\n", comment);
     for (int r = 0; r < set->region_count; r++) {
         sn_buffer_print(&b, "# exponent of %s: %.17g\n", mesh->region_name[r], set->exponent[r]);
+        put_squares(&b, mesh->region_name[r], set->square + SN_SPRING_SQUARES * (size_t)r);
         if (!isnan(set->bulk[r]))
             sn_buffer_print(&b, "# bulk modulus of %s: %.17g Pa\n", mesh->region_name[r],
                             set->bulk[r]);
@@ -89,15 +99,35 @@ static sn_status unknown_region(const springs_reader *v, const char *name) {
                    sn_text_quote(v->mesh->region_name[0]).text);
 }
 
-// "# exponent of body: 12.5" and "# bulk modulus of body: 30 kPa"; other remarks are nobody's
+static sn_status read_squares(springs_reader *v, const char *name, const char *text) {
+    const int region = find_region(v->mesh, name);
+    if (region < 0) return unknown_region(v, name);
+    double *q = v->set->square + SN_SPRING_SQUARES * (size_t)region;
+    const char *at = text;
+    for (int k = 0; k < SN_SPRING_SQUARES; k++) {
+        const char *wrong;
+        while (*at == ' ' || *at == '\t') at++;
+        wrong = sn_number_parse(at, &q[k], &at);
+        if (wrong) break;
+        if (k + 1 == SN_SPRING_SQUARES && *at == 0) return SN_OK;
+    }
+    return sn_fail(SN_E_SYNTAX,
+                   "%s:%d: squares \"%s\": expected 7 numbers, of tension xx yy zz xy yz zx and of "
+                   "compression",
+                   v->csv.path, v->csv.line, sn_text_quote(text).text);
+}
+
+// "# exponent of body: 12.5", "# squares of body: 9 9 9 0 0 0 22" and "# bulk modulus of body: 30
+// kPa"; other remarks are nobody's
 static sn_status read_remark(springs_reader *v) {
-    static const char *const what[2] = {"exponent of ", "bulk modulus of "};
+    static const char *const what[3] = {"exponent of ", "bulk modulus of ", "squares of "};
     char *text = sn_text_trim(v->csv.text + 1), *colon = strrchr(text, ':');
-    for (int k = 0; k < 2; k++) {
+    for (int k = 0; k < 3; k++) {
         const size_t length = strlen(what[k]);
         double value;
         if (!colon || strncmp(text, what[k], length) != 0) continue;
         *colon = 0;
+        if (k == 2) return read_squares(v, sn_text_trim(text + length), sn_text_trim(colon + 1));
         const int region = find_region(v->mesh, sn_text_trim(text + length));
         if (region < 0) return unknown_region(v, text + length);
         const sn_status status = sn_quantity_parse(sn_text_trim(colon + 1), k ? "Pa" : "1", &value);

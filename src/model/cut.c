@@ -3,15 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/vector.h"
 #include "model/mesh.h"
 
 //---- cells of a cut ------------------------------------------------------------------------------
-
-static int compare_int(const void *a, const void *b) {
-    const int *x = a, *y = b;
-    return (*x > *y) - (*x < *y);
-}
 
 static bool is_inside(const sn_cut_def *cut, const double x[3]) {
     if (cut->kind == SN_CUT_SPHERE) return distance3(x, cut->centre) <= cut->radius;

@@ -83,6 +83,7 @@ static uint64_t mix_springs(uint64_t hash, const sn_spring_set *s) {
     hash = sn_hash(hash, s->region, count * sizeof *s->region);
     hash = sn_hash(hash, s->stiffness, count * sizeof *s->stiffness);
     hash = sn_hash(hash, s->exponent, regions * sizeof *s->exponent);
+    hash = sn_hash(hash, s->square, regions * SN_SPRING_SQUARES * sizeof *s->square);
     return sn_hash(hash, s->bulk, regions * sizeof *s->bulk);
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "base/vector.h"
 #include "model/mesh.h"
 
@@ -50,11 +51,6 @@ sn_status sn_mesh_surface_nodes(const sn_mesh *mesh, int surface, int **nodes, i
     }
     sn_free(on);
     return *nodes ? SN_OK : SN_E_MEMORY;
-}
-
-static int compare_int(const void *a, const void *b) {
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
 }
 
 // Six (low, high) pairs of a cell.

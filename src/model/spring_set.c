@@ -15,8 +15,9 @@ sn_status sn_spring_set_create(int count, int region_count, sn_spring_set **set)
     s->region = sn_alloc((size_t)count, sizeof *s->region);
     s->stiffness = sn_alloc((size_t)count, sizeof *s->stiffness);
     s->exponent = sn_alloc((size_t)region_count, sizeof *s->exponent);
+    s->square = sn_alloc((size_t)region_count * SN_SPRING_SQUARES, sizeof *s->square);
     s->bulk = sn_alloc((size_t)region_count, sizeof *s->bulk);
-    if (!s->end || !s->region || !s->stiffness || !s->exponent || !s->bulk) {
+    if (!s->end || !s->region || !s->stiffness || !s->exponent || !s->square || !s->bulk) {
         sn_spring_set_destroy(s);
         return SN_E_MEMORY;
     }
@@ -31,6 +32,7 @@ void sn_spring_set_destroy(sn_spring_set *set) {
     sn_free(set->region);
     sn_free(set->stiffness);
     sn_free(set->exponent);
+    sn_free(set->square);
     sn_free(set->bulk);
     sn_free(set);
 }
@@ -47,6 +49,7 @@ sn_status sn_spring_set_copy(const sn_spring_set *set, sn_spring_set **copy) {
         memcpy(to->stiffness, set->stiffness, count * sizeof *to->stiffness);
     }
     memcpy(to->exponent, set->exponent, regions * sizeof *to->exponent);
+    memcpy(to->square, set->square, regions * SN_SPRING_SQUARES * sizeof *to->square);
     memcpy(to->bulk, set->bulk, regions * sizeof *to->bulk);
     return SN_OK;
 }
@@ -85,6 +88,21 @@ static sn_status check_ends(const sn_spring_set *set, const sn_mesh *mesh, int *
     return SN_OK;
 }
 
+// n.C n >= 0 in all directions: the principal minors, but for rounding; c >= 0
+static bool squares_fit(const double *q) {
+    double size = 0;
+    for (int k = 0; k < SN_SPRING_SQUARES; k++) {
+        if (!isfinite(q[k])) return false;
+        size = fmax(size, fabs(q[k]));
+    }
+    const double least = -1e-9 * size, xy = q[0] * q[1] - q[3] * q[3];
+    const double yz = q[1] * q[2] - q[4] * q[4], zx = q[2] * q[0] - q[5] * q[5];
+    const double all =
+        q[0] * yz - q[3] * (q[3] * q[2] - q[4] * q[5]) + q[5] * (q[3] * q[4] - q[1] * q[5]);
+    return q[0] >= least && q[1] >= least && q[2] >= least && xy >= least * size &&
+           yz >= least * size && zx >= least * size && all >= least * size * size && q[6] >= 0;
+}
+
 sn_status sn_spring_set_check(const sn_spring_set *set, const sn_mesh *mesh) {
     if (set->region_count != mesh->region_count)
         return sn_fail(SN_E_DEFINITION, "the springs are of %d regions, the mesh has %d",
@@ -94,6 +112,11 @@ sn_status sn_spring_set_check(const sn_spring_set *set, const sn_mesh *mesh) {
         if (!isfinite(set->exponent[r]))
             return sn_fail(SN_E_RANGE, "the springs of region \"%s\" have the exponent %g",
                            mesh->region_name[r], set->exponent[r]);
+        if (!squares_fit(set->square + SN_SPRING_SQUARES * (size_t)r))
+            return sn_fail(SN_E_RANGE,
+                           "the springs of region \"%s\" stiffen by squares that are below "
+                           "0 in some direction, or not finite",
+                           mesh->region_name[r]);
         if (set->bulk[r] < 0 || isinf(set->bulk[r]))
             return sn_fail(SN_E_RANGE,
                            "the springs of region \"%s\" have a bulk modulus of %g Pa beside them, "

@@ -25,6 +25,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "springs/vectors.h"
+
 static const double same_time = 1e-9; // of the whole time: two times that are one
 
 //---- life ----------------------------------------------------------------------------------------
@@ -76,6 +78,7 @@ static sn_status create_arrays(const sn_net *net, sn_cut *cut) {
     cut->cell_corner = sn_alloc(net->cell_tiles.corner_count, sizeof *cut->cell_corner);
     cut->spring_corner = sn_alloc(net->spring_tiles.corner_count, sizeof *cut->spring_corner);
     cut->spring_empty = sn_alloc((size_t)net->spring_tiles.count, 1);
+    cut->rim = sn_alloc((size_t)net->cells, sizeof *cut->rim);
     cut->gone = sn_alloc(slots, sizeof *cut->gone);
     cut->loose = sn_alloc(nodes, sizeof *cut->loose);
     cut->piece = sn_alloc(nodes, sizeof *cut->piece);
@@ -84,7 +87,8 @@ static sn_status create_arrays(const sn_net *net, sn_cut *cut) {
     cut->sum = sn_alloc(most, sizeof *cut->sum);
     all = all && cut->removed && cut->point_volume && cut->spring_volume &&
           cut->contact_stiffness && cut->cell_corner && cut->spring_corner && cut->spring_empty &&
-          cut->gone && cut->loose && cut->piece && cut->rigid && cut->touched && cut->sum;
+          cut->rim && cut->gone && cut->loose && cut->piece && cut->rigid && cut->touched &&
+          cut->sum;
     return all ? create_loads(net, cut) : SN_E_MEMORY;
 }
 
@@ -101,6 +105,8 @@ static void set_parts(sn_cut *cut) {
     p->cell_corner = cut->cell_corner;
     p->spring_corner = cut->spring_corner;
     p->spring_empty = cut->spring_empty;
+    p->rim = cut->rim;
+    p->rim_count = &cut->rim_count;
     p->gone = cut->gone;
     p->loose = cut->loose;
     p->contact_stiffness = cut->contact_stiffness;
@@ -129,21 +135,10 @@ void sn_cut_destroy(sn_cut *k) {
         sn_free(k->point_stiffness[p]);
         sn_free(k->present[p]);
     }
-    void *all[] = {k->removed,
-                   k->point_volume,
-                   k->spring_volume,
-                   k->contact_stiffness,
-                   k->cell_corner,
-                   k->gone,
-                   k->spring_corner,
-                   k->spring_empty,
-                   k->loose,
-                   k->load_force,
-                   k->load_gone,
-                   k->piece,
-                   k->rigid,
-                   k->touched,
-                   k->sum};
+    void *all[] = {k->removed,      k->point_volume, k->spring_volume, k->contact_stiffness,
+                   k->cell_corner,  k->rim,          k->gone,          k->spring_corner,
+                   k->spring_empty, k->loose,        k->load_force,    k->load_gone,
+                   k->piece,        k->rigid,        k->touched,       k->sum};
     for (size_t n = 0; n < sizeof all / sizeof *all; n++) sn_free(all[n]);
     sn_free(k);
 }
@@ -272,25 +267,19 @@ static void let_go(sn_state *s) {
     s->gripped_count = kept;
 }
 
-// a cut softens; but means over fewer cells, with the masses that were, may swing faster there. The
-// search starts from the mode that was the highest and a motion without structure around the cut
-static void find_frequency(const sn_net *net, sn_state *s, int count, const int *cells) {
-    double sum = 0;
-    uint64_t x = 88172645463325252ull;
-    for (int k = 0; k < 3 * net->nodes; k++) sum += s->mode[k] * s->mode[k];
-    for (int k = 0; k < 3 * net->nodes && sum > 0; k++) s->mode[k] /= sqrt(sum);
+// what the next look starts from: the mode that was the highest, and motions without structure
+// around the cut and everywhere
+static void stir_mode(const sn_net *net, sn_state *s, int count, const int *cells) {
+    uint64_t noise = SN_NOISE_START;
+    const double part = 0.5 / sqrt((double)count);
+    sn_lanczos_stir(net, s->mode);
     for (int c = 0; c < count; c++)
         for (int a = 0; a < 4; a++) {
             const int slot = net->cell_slot[cells[c]];
             const int node = net->cell_node[(slot / SN_BLOCK * 4 + a) * SN_BLOCK + slot % SN_BLOCK];
-            for (int d = 0; d < 3 && !s->cut->loose[node]; d++) {
-                x ^= x << 13;
-                x ^= x >> 7;
-                x ^= x << 17;
-                s->mode[3 * node + d] = (double)(x >> 11) / 9007199254740992.0 - 0.5;
-            }
+            for (int d = 0; d < 3 && !s->cut->loose[node]; d++)
+                s->mode[3 * node + d] += part * sn_noise(&noise);
         }
-    sn_state_find_frequency(net, s);
 }
 
 static sn_status check(const sn_net *net, int count, const int *cells) {
@@ -309,6 +298,7 @@ sn_status sn_state_cut(const sn_net *net, sn_state *s, int count, const int *cel
     int taken = 0;
     if (removed) *removed = 0;
     SN_TRY(check(net, count, cells));
+    if (net->integrator == SN_INTEGRATOR_EXPLICIT) sn_state_finish_look(net, s);
     for (int k = 0; k < count; k++) {
         taken += !s->cut->removed[cells[k]];
         s->cut->removed[cells[k]] = true;
@@ -323,7 +313,8 @@ sn_status sn_state_cut(const sn_net *net, sn_state *s, int count, const int *cel
     if (explicit) {
         sn_state_half_kick(net, s, -0.5 * s->last_step);
         let_go(s);
-        find_frequency(net, s, count, cells);
+        stir_mode(net, s, count, cells);
+        sn_state_doubt_frequency(net, s);
     }
     if (s->implicit) sn_implicit_restart(s->implicit);
     return SN_OK;

@@ -38,6 +38,7 @@ struct sn_cut {
     double *point_volume, *spring_volume, *contact_stiffness;
     uint16_t *cell_corner, *spring_corner;
     unsigned char *spring_empty;
+    int *rim, rim_count;
     bool *gone, *loose;
     int load_count;
     double **load_force;

@@ -195,6 +195,21 @@ static void leave_nodes(const sn_net *net, sn_cut *cut) {
     for (int k = 0; k < cut->pieces; k++) cut->free_piece = cut->free_piece || !cut->touched[k];
 }
 
+static void leave_rim(const sn_net *net, sn_cut *cut) {
+    bool *lost = cut->touched; // nodes
+    memset(lost, 0, (size_t)net->nodes * sizeof *lost);
+    for (int e = 0; e < net->cells; e++)
+        for (int a = 0; a < 4 && cut->removed[e]; a++)
+            lost[corners_of(net, e)[a * SN_BLOCK]] = true;
+    cut->rim_count = 0;
+    for (int e = 0; e < net->cells; e++) {
+        const int *corner = corners_of(net, e);
+        const bool near = lost[corner[0]] || lost[corner[SN_BLOCK]] || lost[corner[2 * SN_BLOCK]] ||
+                          lost[corner[3 * SN_BLOCK]];
+        if (near && !cut->removed[e]) cut->rim[cut->rim_count++] = net->cell_slot[e];
+    }
+}
+
 // the surface for tools: faces of cells that are left towards none
 static void leave_surface(const sn_net *net, sn_cut *cut) {
     static const int face[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
@@ -234,6 +249,7 @@ void sn_cut_restore(const sn_net *net, sn_cut *cut) {
     leave_springs(net, cut);
     leave_stars(net, cut);
     leave_nodes(net, cut);
+    leave_rim(net, cut);
     leave_surface(net, cut);
     leave_loads(net, cut);
 }

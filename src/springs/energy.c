@@ -16,67 +16,25 @@
 
 #include "springs/net.h"
 
-/// The memory of one kind of item of a region.
-typedef struct branches {
-    const sn_moment *moment;
-    const sn_exponentials *memory;
-    size_t first, count; ///< in the store: first number, numbers of a block and branch
-    size_t all;          ///< branches in the store, the viscous part too
-} branches;
-
-static branches branches_of(const sn_net *net, const sn_net_region *region, const sn_moment *m,
-                            int kind) {
-    sn_net_store store[SN_STORES];
-    sn_region_stores(net, region, store);
-    const sn_net_store *s = &store[kind];
-    return (branches){m, sn_region_memory(region, s->part), s->first,
-                      (size_t)s->components * SN_BLOCK,
-                      (size_t)sn_region_branches(region, s->part)};
-}
-
-// T for k = 0, else H of branch k - 1, of number i of a block
-static double stored(const branches *b, size_t block, size_t k, size_t i) {
-    return sn_real_at(b->moment->precision, b->moment->store,
-                      b->first + (block * (1 + b->all) + k) * b->count + i);
-}
-
 //---- springs -------------------------------------------------------------------------------------
 
-// stretch at which the law gives t
-static double stretch_of(double B, double t) {
-    if (t >= 0) return 1.0 + (fabs(B) < 1e-12 ? t : log1p(B * t) / B);
-    double x = 1.0; // of x^3 - 3 t x^2 - 1, convex and rising above its root
-    for (int turn = 0; turn < 60; turn++) {
-        double step = (x * x * (x - 3.0 * t) - 1.0) / (3.0 * x * (x - 2.0 * t));
-        x -= step;
-        if (fabs(step) < 1e-15 * x) break;
-    }
-    return x;
-}
-
-// energy over stiffness and squared rest length
-static double potential(double B, double lambda) {
-    const double y = lambda - 1.0;
-    if (y < 0) return (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
-    if (fabs(B * y) < 1e-5) return y * y * (0.5 + B * y / 6.0);
-    return (expm1(B * y) / B - y) / B;
-}
-
 static double of_springs(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
-    const branches b = branches_of(net, region, m, SN_STORE_SPRING);
+    const sn_recalled b = sn_recall(net, region, m, SN_STORE_SPRING);
     const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
-    const double *inverse = net->data[SN_DOUBLE].inverse, B = region->exponent;
+    const double *inverse = net->data[SN_DOUBLE].inverse;
     double sum = 0;
     for (size_t n = 0; n < (size_t)region->spring_blocks * SN_BLOCK; n++) {
         const size_t slot = (size_t)region->spring_block * SN_BLOCK + n;
         const size_t block = n / SN_BLOCK, lane = n % SN_BLOCK;
         if (!(stiffness[slot] > 0)) continue;
-        const double T = stored(&b, block, 0, lane), lambda = stretch_of(B, T);
-        const double now = potential(B, lambda);
+        const sn_spring_law law = sn_net_spring_law(net, region, (int)slot);
+        const double T = sn_recalled_at(&b, block, 0, lane), lambda = sn_spring_stretch(&law, T);
+        const double now = sn_spring_potential(&law, lambda);
         for (int k = 0; k < b.memory->terms; k++) {
             const double g = b.memory->g[k];
-            const double t = T - stored(&b, block, (size_t)k + 1, lane) / g, v = stretch_of(B, t);
-            double held = now - potential(B, v) - t * (lambda - v);
+            const double t = T - sn_recalled_at(&b, block, (size_t)k + 1, lane) / g;
+            const double v = sn_spring_stretch(&law, t);
+            double held = now - sn_spring_potential(&law, v) - t * (lambda - v);
             sum += g * stiffness[slot] / inverse[slot] * fmax(held, 0.0); // rounding
         }
     }
@@ -86,13 +44,13 @@ static double of_springs(const sn_net *net, const sn_net_region *region, const s
 //---- volume points and cells ---------------------------------------------------------------------
 
 static double of_points(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
-    const branches b = branches_of(net, region, m, SN_STORE_POINT);
+    const sn_recalled b = sn_recall(net, region, m, SN_STORE_POINT);
     const double *volume = sn_parts_point_volume(net, m->parts);
     double sum = 0;
     for (size_t n = 0; region->bulk > 0 && n < (size_t)region->point_blocks * SN_BLOCK; n++) {
         const double V = volume[(size_t)region->point_block * SN_BLOCK + n];
         for (int k = 0; k < b.memory->terms; k++) {
-            double H = stored(&b, n / SN_BLOCK, (size_t)k + 1, n % SN_BLOCK);
+            double H = sn_recalled_at(&b, n / SN_BLOCK, (size_t)k + 1, n % SN_BLOCK);
             sum += V * H * H / (2.0 * b.memory->g[k] * region->bulk);
         }
     }
@@ -131,20 +89,20 @@ static double compliance(const double D[21], double bulk, const double q[6]) {
 }
 
 // what one branch of six components holds per volume, over g/2
-static double twice_held(const sn_net_region *region, const branches *b, const double D[21], int k,
-                         size_t n) {
+static double twice_held(const sn_net_region *region, const sn_recalled *b, const double D[21],
+                         int k, size_t n) {
     const double g = b->memory->g[k];
     double q[6];
     for (size_t c = 0; c < 6; c++)
-        q[c] = stored(b, n / SN_BLOCK, (size_t)k + 1, c * SN_BLOCK + n % SN_BLOCK) / g;
+        q[c] = sn_recalled_at(b, n / SN_BLOCK, (size_t)k + 1, c * SN_BLOCK + n % SN_BLOCK) / g;
     return compliance(D, region->bulk + region->shear, q);
 }
 
 // number i of a place
-static double twice_held_volume(const sn_net_region *region, const branches *b, int k, size_t n,
+static double twice_held_volume(const sn_net_region *region, const sn_recalled *b, int k, size_t n,
                                 size_t i) {
-    double p =
-        stored(b, n / SN_BLOCK, (size_t)k + 1, i * SN_BLOCK + n % SN_BLOCK) / b->memory->g[k];
+    double p = sn_recalled_at(b, n / SN_BLOCK, (size_t)k + 1, i * SN_BLOCK + n % SN_BLOCK) /
+               b->memory->g[k];
     return region->bulk > 0 ? p * p / region->bulk : 0.0;
 }
 
@@ -160,11 +118,11 @@ static void tangents(const sn_net *net, const sn_net_region *region, int slot, c
 
 static double of_cells(const sn_net *net, const sn_net_region *region, const sn_moment *m) {
     static const int kind[2] = {SN_STORE_CELL, SN_STORE_FIBRE};
-    const branches volume = branches_of(net, region, m, SN_STORE_BULK);
+    const sn_recalled volume = sn_recall(net, region, m, SN_STORE_BULK);
     const int first = sn_net_first_split(net);
-    branches b[2];
+    sn_recalled b[2];
     double sum = 0;
-    for (int k = first; k < region->splits; k++) b[k] = branches_of(net, region, m, kind[k]);
+    for (int k = first; k < region->splits; k++) b[k] = sn_recall(net, region, m, kind[k]);
     for (size_t n = 0; n < (size_t)sn_region_law_blocks(net, region) * SN_BLOCK; n++) {
         const size_t slot = (size_t)sn_region_law_block(net, region) * SN_BLOCK + n;
         double E[6], D[2][21];

@@ -56,7 +56,8 @@ static sn_moment moment_of(const sn_net *net, const sn_state *s) {
                        .tool_force = s->tool_force,
                        .kinetic = s->broken ? 0.0 : kinetic(net, s),
                        .damped = s->damped_energy,
-                       .parts = sn_state_parts(s)};
+                       .parts = sn_state_parts(s),
+                       .upright = sn_state_is_upright(s)};
 }
 
 // way of number `at` in the last step

@@ -179,30 +179,11 @@ static void add_energy(energies *e, sn_part part, double x) {
     e->part[part] += x;
 }
 
-/// What of one kind of item is in the store.
-typedef struct recalled {
-    const sn_moment *moment;
-    size_t first, count, branches; ///< count: numbers of a block and branch
-    double g_inf;
-} recalled;
-
-static recalled recall(const sn_net *net, const sn_net_region *region, const sn_moment *m,
-                       int kind) {
-    sn_net_store store[SN_STORES];
-    sn_region_stores(net, region, store);
-    const sn_net_store *s = &store[kind];
-    return (recalled){m, s->first, (size_t)s->components * SN_BLOCK,
-                      (size_t)sn_region_branches(region, s->part),
-                      sn_region_memory(region, s->part)->g_inf};
-}
-
 // number i of a block with memory, from the store; `T` where nothing is remembered
-static double remembered(const recalled *r, size_t block, size_t i, double T) {
-    const size_t at = r->first + block * (1 + r->branches) * r->count + i;
+static double remembered(const sn_recalled *r, size_t block, size_t i, double T) {
     if (r->branches == 0) return T;
-    double sum = r->g_inf * sn_real_at(r->moment->precision, r->moment->store, at);
-    for (size_t k = 1; k <= r->branches; k++)
-        sum += sn_real_at(r->moment->precision, r->moment->store, at + k * r->count);
+    double sum = r->memory->g_inf * sn_recalled_at(r, block, 0, i);
+    for (size_t k = 1; k <= r->branches; k++) sum += sn_recalled_at(r, block, k, i);
     return sum;
 }
 
@@ -217,7 +198,7 @@ static void solid_place(const sn_net *net, const sn_net_region *region, const sn
     double E[6], S[6], W, p = region->bulk * (c->J - 1.0);
     green_strain(c->F, E);
     for (int n = sn_net_first_split(net); n < region->splits; n++) {
-        const recalled r = recall(net, region, m, kind[n]);
+        const sn_recalled r = sn_recall(net, region, m, kind[n]);
         sn_net_law(net, &region->split[n], slot, 1, E, &W, S, NULL);
         add_energy(energy, sn_split_part(n), W);
         for (size_t k = 0; k < 6; k++) S[k] = remembered(&r, block, k * SN_BLOCK + lane, S[k]);
@@ -225,7 +206,7 @@ static void solid_place(const sn_net *net, const sn_net_region *region, const sn
     }
     if (net->volume_mode != SN_VOLUME_CELL) return;
     const bool apart = region->tissue.branched;
-    const recalled r = recall(net, region, m, apart ? SN_STORE_BULK : SN_STORE_CELL);
+    const sn_recalled r = sn_recall(net, region, m, apart ? SN_STORE_BULK : SN_STORE_CELL);
     add_energy(energy, SN_PART_VOLUMETRIC, 0.5 * p * (c->J - 1.0));
     p = remembered(&r, block, (apart ? 0u : 6u) * SN_BLOCK + lane, p);
     for (int k = 0; k < 3; k++) stress[k] += p;
@@ -272,11 +253,12 @@ static void central_cell(const sn_net *net, const sn_net_region *region, const s
     const sn_net_data *data = &net->data[SN_DOUBLE];
     const double *stiffness = sn_parts_stiffness(net, m->parts, SN_DOUBLE);
     const double *volume = sn_parts_spring_volume(net, m->parts);
-    const recalled r = recall(net, region, m, SN_STORE_SPRING);
+    const sn_recalled r = sn_recall(net, region, m, SN_STORE_SPRING);
     for (int q = net->spring_share_start[slot]; q < net->spring_share_start[slot + 1]; q++) {
         const int s = net->spring_share[q];
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
-        const double inverse = ((const double *)data->inverse)[s], B = region->exponent;
+        const double inverse = ((const double *)data->inverse)[s];
+        const sn_spring_law law = sn_net_spring_law(net, region, s);
         const double part = stiffness[s] / volume[s];
         double x[3], l2 = 0, t, phi;
         for (size_t d = 0; d < 3; d++) {
@@ -286,15 +268,9 @@ static void central_cell(const sn_net *net, const sn_net_region *region, const s
                    sn_real_at(m->precision, m->u, 4 * (size_t)end[0] + d);
             l2 += x[d] * x[d];
         }
-        double lambda = sqrt(l2 * inverse), y = lambda - 1.0;
-        if (y < 0) {
-            t = (lambda - 1.0 / (lambda * lambda)) / 3.0;
-            phi = (0.5 * lambda * lambda + 1.0 / lambda - 1.5) / 3.0;
-        } else {
-            bool straight = fabs(B * y) < 1e-5; // phi by two terms of its series
-            t = fabs(B * y) < 1e-12 ? y : expm1(B * y) / B;
-            phi = straight ? y * y * (0.5 + B * y / 6.0) : (t - y) / B;
-        }
+        double lambda = sqrt(l2 * inverse);
+        t = sn_spring_tension(&law, lambda, NULL);
+        phi = sn_spring_potential(&law, lambda);
         t = remembered(&r, block - (size_t)region->spring_block, lane, t);
         for (int k = 0; k < 6; k++)
             stress[k] += part * t / lambda * x[pair[k][0]] * x[pair[k][1]] / c->J;
@@ -416,6 +392,7 @@ sn_stored sn_fields_stored(const sn_net *net, const sn_fields *f, const sn_momen
     const double *volume = net->data[SN_DOUBLE].volume;
     sn_stored sum = {.instant = sn_fields_elastic(net, f), .memory = sn_net_memory_energy(net, m)};
     for (int e = 0; e < net->cells; e++) sum.elastic += f->held[e] * volume[net->cell_slot[e]];
+    sum.elastic += sn_net_upright_energy(net, m);
     return sum;
 }
 

@@ -62,7 +62,7 @@ static void set_cells(const sn_net *net, const sn_net_region *region, const sn_f
     pass->volume_mode = net->volume_mode;
     pass->bulk = region->bulk;
     pass->pressure = call->out->pressure;
-    pass->upright = call->upright && net->volume ? fmax(20 * region->shear, region->bulk) : 0.0;
+    pass->upright = call->upright && net->volume ? sn_region_upright(region) : 0.0;
     pass->first = sn_region_law_block(net, region);
     pass->shape = call->out->shape;
     pass->piola = call->out->piola;
@@ -93,6 +93,7 @@ static void set_springs(const sn_net *net, const sn_net_region *region, const sn
                         const sn_factors *factors, sn_spring_pass *pass) {
     pass->stiffness = sn_parts_stiffness(net, call->parts, call->precision);
     pass->exponent = region->exponent;
+    pass->square = region->squared ? region->square : NULL;
     pass->u = call->u;
     pass->first = region->spring_block;
     set_memory(region, call, SN_PART_DEVIATORIC, region->spring_store, factors, &pass->memory);

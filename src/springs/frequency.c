@@ -11,18 +11,7 @@
 #include <string.h>
 
 #include "springs/net.h"
-
-enum { APART = 16 }; // sums that do not wait for each other
-
-static double dot(const double *a, const double *b, size_t n) {
-    double part[APART] = {0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + APART <= n; i += APART)
-        for (size_t k = 0; k < APART; k++) part[k] += a[i + k] * b[i + k];
-    for (; i < n; i++) part[0] += a[i] * b[i];
-    for (size_t k = 0; k < APART; k++) sum += part[k];
-    return sum;
-}
+#include "springs/vectors.h"
 
 static void evaluate(const sn_net *net, const sn_frequency_call *call, const void *u, bool bare) {
     sn_force_call force = {.precision = call->precision,
@@ -142,7 +131,7 @@ bool sn_lanczos_begin(const sn_net *net, const sn_frequency_call *call, sn_lancz
         base[k] = sn_real_at(call->precision, call->scratch->f, 4 * (k / 3) + k % 3);
         call->basis[k] = net->root_inverse_mass[k] > 0 ? call->mode[k] : 0.0;
     }
-    const double norm = sqrt(dot(call->basis, call->basis, n));
+    const double norm = sqrt(sn_dot(call->basis, call->basis, n));
     if (!(norm > 0) || !isfinite(norm)) return false;
     for (size_t k = 0; k < n; k++) call->basis[k] /= norm;
     try_vector(net, call, call->basis, l);
@@ -156,14 +145,14 @@ bool sn_lanczos_go_on(const sn_net *net, const sn_frequency_call *call, sn_lancz
     const double *q = call->basis + (size_t)at * n;
     double *w = last ? call->mode : call->basis + (size_t)(at + 1) * n;
     take_product(net, call, base_of(net, call), q, l->tiny, w);
-    l->diagonal[at] = dot(q, w, n);
+    l->diagonal[at] = sn_dot(q, w, n);
     if (last) return false;
     for (int j = 0; j <= at; j++) { // against all: rounding would bring copies back
         const double *p = call->basis + (size_t)j * n;
-        const double along = dot(p, w, n);
+        const double along = sn_dot(p, w, n);
         for (size_t k = 0; k < n; k++) w[k] -= along * p[k];
     }
-    l->beside[at] = sqrt(dot(w, w, n));
+    l->beside[at] = sqrt(sn_dot(w, w, n));
     if (!(l->beside[at] > 1e-9 * fabs(l->diagonal[0]))) return false;
     for (size_t k = 0; k < n; k++) w[k] /= l->beside[at];
     try_vector(net, call, w, l);
@@ -177,6 +166,7 @@ double sn_lanczos_end(const sn_net *net, const sn_frequency_call *call, sn_lancz
     for (size_t k = 0; k < n; k++) call->mode[k] = x[0] * call->basis[k];
     for (int j = 1; j < l->steps; j++)
         for (size_t k = 0; k < n; k++) call->mode[k] += x[j] * call->basis[(size_t)j * n + k];
+    if (call->parts) sn_lanczos_spread(net, call, l);
     return value;
 }
 
@@ -206,13 +196,8 @@ double sn_net_stable_step(const sn_net *net, double omega2) {
 // restarts until the eigenvalue settles
 static double search(const sn_net *net, const sn_frequency_call *call) {
     double omega2 = 0.0;
-    uint64_t x = 88172645463325252ull; // a vector without structure
-    for (int k = 0; k < 3 * net->nodes; k++) {
-        x ^= x << 13;
-        x ^= x >> 7;
-        x ^= x << 17;
-        call->mode[k] = (double)(x >> 11) / 9007199254740992.0 - 0.5;
-    }
+    uint64_t noise = SN_NOISE_START;
+    for (int k = 0; k < 3 * net->nodes; k++) call->mode[k] = sn_noise(&noise);
     for (int turn = 0; turn < 10; turn++) {
         double before = omega2;
         omega2 = sn_net_frequency(net, call);

@@ -163,6 +163,7 @@ sn_status sn_net_spring_set(const sn_net *net, sn_spring_set **set) {
     for (int r = 0; r < net->region_count; r++) {
         const sn_net_region *g = &net->region[r];
         (*set)->exponent[r] = g->exponent;
+        memcpy((*set)->square + SN_SPRING_SQUARES * r, g->square, sizeof g->square);
         if (net->volume) (*set)->bulk[r] = g->bulk;
         for (int s = g->spring_block * SN_BLOCK;
              s < (g->spring_block + g->spring_blocks) * SN_BLOCK; s++) {

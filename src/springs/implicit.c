@@ -24,6 +24,7 @@
 #include <string.h>
 
 #include "springs/net.h"
+#include "springs/vectors.h"
 
 enum { NEWTON_MOST = 25, HALVINGS = 8, FEW_CORNERS = 8 };
 static const double tolerance = 1e-8; // residual over the forces at work
@@ -161,12 +162,6 @@ void sn_implicit_counts(const sn_implicit *im, int *corrections, int *cuts) {
 
 static bool is_fixed(const sn_net *net, int i, int d) {
     return net->fixed_bits[i] >> d & 1;
-}
-
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t k = 0; k < n; k++) sum += a[k] * b[k];
-    return sum;
 }
 
 // velocities and accelerations that belong to the present u
@@ -328,7 +323,7 @@ static bool approach(const sn_net *net, sn_state *s, sn_implicit *im) {
     for (size_t k = 0; k < n; k++)
         im->b[k] = is_fixed(net, (int)(k / 3), (int)(k % 3)) ? 0.0 : im->b[k] - im->x[k];
     memset(im->x, 0, n * sizeof *im->x);
-    sn_tangent_solve(net, im->tangent, im->b, 1e-3 * sqrt(dot(im->b, im->b, n)), im->x);
+    sn_tangent_solve(net, im->tangent, im->b, 1e-3 * sqrt(sn_dot(im->b, im->b, n)), im->x);
     for (size_t k = 0; k < n; k++) im->x[k] += way[k];
     remember_place(net, s, im);
     double part = 1.0;

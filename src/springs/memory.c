@@ -24,6 +24,16 @@ void sn_region_stores(const sn_net *net, const sn_net_region *g, sn_net_store st
         (sn_net_store){SN_PART_VOLUMETRIC, 1, own_volume && branched ? places : 0, g->bulk_store};
 }
 
+sn_recalled sn_recall(const sn_net *net, const sn_net_region *region, const sn_moment *moment,
+                      int kind) {
+    sn_net_store store[SN_STORES];
+    sn_region_stores(net, region, store);
+    const sn_net_store *s = &store[kind];
+    return (sn_recalled){moment, sn_region_memory(region, s->part), s->first,
+                         (size_t)s->components * SN_BLOCK,
+                         (size_t)sn_region_branches(region, s->part)};
+}
+
 void sn_net_place_stores(sn_net *net) {
     size_t at = 0;
     for (int r = 0; r < net->region_count; r++) {

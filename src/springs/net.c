@@ -67,16 +67,20 @@ static sn_status check_motion(const sn_case *c) {
 
 static sn_status check_central(const sn_case *c, sn_net *net, sn_net_region *region) {
     const sn_tissue *t = &region->tissue;
-    if (t->law->fibres && !t->law->fibre_constant)
+    if (t->law->fibres && !t->law->fibre_constant && !c->springs_given)
         return sn_fail(SN_E_UNSUPPORTED,
                        "tissue %s: law %s has fibres and matrix in one energy, which central "
-                       "springs cannot take apart; use model coupled or smoothed, or a law like "
-                       "hgo",
+                       "springs cannot take apart; use what `sinew calibrate` finds, model "
+                       "coupled or smoothed, or a law like hgo",
                        t->name, t->law->name);
     region->splits = sn_tissue_split_fibres(t, region->split);
     if (c->springs_given) {
         const int r = (int)(region - net->region);
         region->exponent = c->springs_given->exponent[r];
+        for (int k = 0; k < SN_SPRING_SQUARES; k++) {
+            region->square[k] = c->springs_given->square[SN_SPRING_SQUARES * r + k];
+            region->squared = region->squared || region->square[k] != 0;
+        }
         region->bulk = c->springs.volume ? sn_net_given_bulk(c, r, region->bulk) : 0.0;
         return SN_OK;
     }

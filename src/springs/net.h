@@ -23,9 +23,11 @@ typedef struct sn_net_region {
     sn_tissue bare; ///< where fibred: without them
     float bare_f[SN_VALUES_MAX];
     double density;
-    double shear;      ///< instantaneous, small strain
-    double bulk;       ///< of the volume term of this net (central: what springs do not bring)
-    double exponent;   ///< B of the springs
+    double shear;    ///< instantaneous, small strain
+    double bulk;     ///< of the volume term of this net (central: what springs do not bring)
+    double exponent; ///< B of the springs
+    double square[SN_SPRING_SQUARES]; ///< C and c of the springs
+    bool squared;                     ///< not all of them 0
     double stiffening; ///< factor on the springs' stiffness from the fit of their law
     /// Of all parts of the stress; of the deviatoric one where the tissue is branched.
     sn_exponentials memory;
@@ -148,6 +150,7 @@ typedef struct sn_parts {
     const uint16_t *spring_corner;     ///< springs that are gone stand where others stand
     const unsigned char *spring_empty; ///< tiles of which no spring is left
     const void *present[2];            ///< fans: see sn_tile, beside their `corner`
+    const int *rim, *rim_count;        ///< slots of cells at nodes that have lost one (rim_count)
     const bool *gone;                  ///< slots of removed cells        (cell_blocks x SN_BLOCK)
     const bool *loose;                 ///< nodes that have lost all cells               (nodes)
     const double *contact_stiffness;   ///< 0: not on the surface              (contact_count)
@@ -318,6 +321,7 @@ struct sn_state {
     sn_scratch probe;
     double omega2, seen_omega2; ///< until the next look, at the last look
     double ruling_omega2;       ///< what the step is chosen for
+    double doubt;               ///< factor on omega2: above 1 until looks have seen what a cut left
     bool touching;              ///< a node touches a tool
     long steps;
     int check_in, check_every; ///< steps until omega2 is looked at again
@@ -390,6 +394,18 @@ bool sn_lattice_constants(const sn_shape_def *shape, double axis[3], double face
 /// the net to it.
 sn_status sn_net_relaxed_scale(const sn_mesh *mesh, int region, const sn_spring *spring, int count,
                                double *scale);
+/// The law of one spring (equation 14 in tension, without collapse in compression, and what a
+/// calibration adds: sinew/model.h), over stiffness and rest length.
+typedef struct sn_spring_law {
+    double exponent, up, down; ///< B; n.C n; c
+} sn_spring_law;
+sn_spring_law sn_net_spring_law(const sn_net *net, const sn_net_region *region, int slot);
+/// Force at a stretch above 0. @param slope  Nullable
+double sn_spring_tension(const sn_spring_law *law, double lambda, double *slope);
+/// Its integral from rest, over squared rest length.
+double sn_spring_potential(const sn_spring_law *law, double lambda);
+/// The stretch at which the force is t.
+double sn_spring_stretch(const sn_spring_law *law, double t);
 /// Exponent B, and factor on the stiffness, of springs that together stretch like the tissue.
 sn_status sn_spring_fit(const sn_tissue *tissue, double *exponent, double *factor);
 
@@ -517,6 +533,11 @@ void sn_net_tool_pose(const sn_net *net, const sn_state *state, int tool, double
 void sn_state_follow_frequency(const sn_net *net, sn_state *s, double way);
 /// A tool begins to touch: looks follow each other closely until they find nothing new.
 void sn_state_look_closer(const sn_net *net, sn_state *s);
+/// After a cut: omega2 doubles, until looks that begin at once have seen what is left.
+void sn_state_doubt_frequency(const sn_net *net, sn_state *s);
+/// Before a cut: a look that follows another cut, if one is under way, is brought to its end, so
+/// that cuts which follow each other fast leave no state without looks.
+void sn_state_finish_look(const sn_net *net, sn_state *s);
 /// Ends a look under way without a result: what it looked at is no more.
 void sn_state_forget_look(sn_state *s);
 /// Does again what a look under way had done, which bytes do not hold.
@@ -526,6 +547,13 @@ void sn_state_rest_frequency(const sn_net *net, sn_state *s);
 /// Looks whether cells are crushed, from s->now.growth, and from all cells while some were; counts
 /// a warning when it begins.
 void sn_state_look_at_cells(const sn_net *net, sn_state *s);
+/// Whether crushed cells have a stress of their own now (SN_UPRIGHT).
+bool sn_state_is_upright(const sn_state *s);
+/// Modulus of the stress of crushed cells (SN_UPRIGHT) of a region, Pa.
+double sn_region_upright(const sn_net_region *region);
+/// What that stress adds to the highest eigenvalue at most, of one cell, 1/s2: a look at a place
+/// where it does not act just then cannot see it.
+double sn_state_upright_stiffness(const sn_net *net, const sn_state *s);
 
 //---- what is imposed while a state runs ----------------------------------------------------------
 
@@ -577,6 +605,10 @@ double sn_net_frequency(const sn_net *net, const sn_frequency_call *call);
 bool sn_lanczos_begin(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
 bool sn_lanczos_go_on(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
 double sn_lanczos_end(const sn_net *net, const sn_frequency_call *call, sn_lanczos *l);
+/// After a search in a cut body: gives call->mode, of length 1, weight on what is apart from it.
+void sn_lanczos_spread(const sn_net *net, const sn_frequency_call *call, const sn_lanczos *l);
+/// Before the first of them: gives a mode length 1, and a motion without structure on top.
+void sn_lanczos_stir(const sn_net *net, double *mode);
 /// The explicit step and the mode of the highest frequency of a net at rest.
 sn_status sn_net_find_step(sn_net *net);
 /// Longest stable step for a highest eigenvalue, without safety.
@@ -653,7 +685,10 @@ typedef struct sn_moment {
     double (*tool_force)[3]; ///< read only
     double kinetic, damped;  ///< J: of motion; taken by damping by mass so far
     const sn_parts *parts;   ///< Nullable
+    bool upright;            ///< crushed cells have a stress of their own
 } sn_moment;
+/// Energy of crushed cells against the stress that turns them round, J.
+double sn_net_upright_energy(const sn_net *net, const sn_moment *moment);
 typedef struct sn_fields sn_fields;
 sn_status sn_fields_create(const sn_net *net, sn_fields **fields);
 void sn_fields_destroy(sn_fields *fields); // NULL is allowed
@@ -666,7 +701,8 @@ double sn_fields_elastic(const sn_net *net, const sn_fields *fields);
 /// What a body has stored, J.
 typedef struct sn_stored {
     double instant; ///< of the instantaneous law, W + U
-    double elastic; ///< of the equilibrium part, g_inf (W + U), each part with its own g_inf
+    double elastic; ///< of the equilibrium part, g_inf (W + U), each part with its own g_inf; and
+                    ///< of crushed cells
     double memory;  ///< in the branches
 } sn_stored;
 /// From what was filled last, which was this moment.
@@ -679,6 +715,23 @@ double sn_net_memory_energy(const sn_net *net, const sn_moment *moment);
 /// Appends one row: time, probes, tools. `row` has room for the columns.
 sn_status sn_net_history_row(const sn_net *net, const sn_moment *moment, double *row,
                              sn_record *history);
+
+/// The memory of one kind of item of a region at a moment.
+typedef struct sn_recalled {
+    const sn_moment *moment;
+    const sn_exponentials *memory;
+    size_t first, count; ///< in the store: first number, numbers of a block and branch
+    size_t branches;     ///< in the store, the viscous part too
+} sn_recalled;
+/// kind: SN_STORE_CELL …
+sn_recalled sn_recall(const sn_net *net, const sn_net_region *region, const sn_moment *moment,
+                      int kind);
+/// The instantaneous stress for k = 0, else that of branch k - 1, of number i of a block. There are
+/// none where `branches` is 0.
+static inline double sn_recalled_at(const sn_recalled *r, size_t block, size_t k, size_t i) {
+    return sn_real_at(r->moment->precision, r->moment->store,
+                      r->first + (block * (1 + r->branches) + k) * r->count + i);
+}
 
 //---- equilibrium ---------------------------------------------------------------------------------
 

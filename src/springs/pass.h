@@ -46,6 +46,9 @@
 /// (J - SN_UPRIGHT), until none is.
 #define SN_UPRIGHT 0.3
 
+#define SN_SPRING_STEEPEST                                                                         \
+    60.0 ///< most of C x^2 in the law of a spring: finite in single precision
+
 /// How an instantaneous stress becomes the stress with memory.
 typedef enum sn_memory_mode {
     SN_MEMORY_OFF,     ///< it stays what it is
@@ -135,6 +138,7 @@ typedef struct sn_point_pass {
 typedef struct sn_spring_pass {
     const void *stiffness; ///< N/m                               (blocks x SN_BLOCK)
     double exponent;       ///< B of the law
+    const double *square;  ///< Nullable: C and c of the law    (SN_SPRING_SQUARES)
     const void *u;
     int first;             ///< block of the net where the memory starts
     sn_memory_pass memory; ///< one component: force over stiffness and rest length

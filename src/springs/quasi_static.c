@@ -48,12 +48,13 @@ typedef struct solver {
 
 double sn_net_smallest_ratio(const sn_net *net, const sn_parts *parts, const double *u) {
     const double *gradient = net->data[SN_DOUBLE].gradient;
+    const double *volume = sn_parts_volume(net, parts, SN_DOUBLE);
     double least = INFINITY;
     for (int s = 0; s < net->cell_blocks * SN_BLOCK; s++) {
         const size_t block = (size_t)s / SN_BLOCK, lane = (size_t)s % SN_BLOCK;
         const int *corner = net->cell_node + block * 4 * SN_BLOCK + lane;
         double F[9];
-        if (parts && parts->gone[s]) continue;
+        if (!(volume[s] > 0)) continue; // gone, or filling: a copy of a cell that may be gone
         for (size_t i = 0; i < 3; i++)
             for (size_t j = 0; j < 3; j++) {
                 double sum = net->axes[3 * j + i];
@@ -367,6 +368,7 @@ static bool spring_back(solver *v, double *work) {
         if (equilibrium(v, part)) {
             *work += work_of_loads(v, v->start);
             keep(v);
+            part *= grow;
             continue;
         }
         v->holding = from;

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "springs/net.h"
+#include "springs/vectors.h"
 
 enum { TURNS = 300 };
 static const double solved = 1e-2; // of the residual; the energy is right to its square
@@ -63,12 +64,6 @@ static void multiply(const relaxation *v, const double *x, double *y) {
     }
 }
 
-static double dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 static void precondition(const relaxation *v) {
     for (size_t i = 0; i < v->n; i++)
         v->z[i] = v->held[i / 3] || !(v->diagonal[i] > 0) ? 0.0 : v->r[i] / v->diagonal[i];
@@ -80,18 +75,18 @@ static double relax(relaxation *v) {
     double freed = 0;
     precondition(v);
     memcpy(v->p, v->z, n * sizeof *v->p);
-    double rz = dot(v->r, v->z, n);
+    double rz = sn_dot(v->r, v->z, n);
     const double target = solved * solved * rz;
     for (int turn = 0; turn < TURNS && rz > target && rz > 0; turn++) {
         multiply(v, v->p, v->q);
         for (size_t i = 0; i < n; i++) v->q[i] = v->held[i / 3] ? 0.0 : v->q[i];
-        const double pq = dot(v->p, v->q, n);
+        const double pq = sn_dot(v->p, v->q, n);
         if (!(pq > 0)) break;
         const double a = rz / pq;
         freed += a * rz;
         for (size_t i = 0; i < n; i++) v->r[i] -= a * v->q[i];
         precondition(v);
-        const double next = dot(v->r, v->z, n);
+        const double next = sn_dot(v->r, v->z, n);
         for (size_t i = 0; i < n; i++) v->p[i] = v->z[i] + next / rz * v->p[i];
         rz = next;
     }
@@ -104,7 +99,7 @@ static double strain_energy(relaxation *v, const double *position) {
         for (size_t k = 0; k < 3; k++) v->u[i] += strain[i % 3][k] * position[i / 3 * 3 + k];
     }
     multiply(v, v->u, v->r);
-    const double even = dot(v->u, v->r, v->n);
+    const double even = sn_dot(v->u, v->r, v->n);
     for (size_t i = 0; i < v->n; i++) v->r[i] = v->held[i / 3] ? 0.0 : -v->r[i];
     return even - relax(v);
 }

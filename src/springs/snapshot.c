@@ -10,7 +10,7 @@
 
 #include "springs/net.h"
 
-#define SNAPSHOT_VERSION 2u
+#define SNAPSHOT_VERSION 3u
 #define SNAPSHOT_ORDER 0x01020304u
 
 /// What stands before the pieces.
@@ -29,6 +29,7 @@ static uint64_t mix_region(uint64_t hash, const sn_net_region *g) {
     const double numbers[] = {g->density,  g->shear,      g->bulk,
                               g->exponent, g->stiffening, (double)g->splits};
     hash = sn_hash(hash, numbers, sizeof numbers);
+    hash = sn_hash(hash, g->square, sizeof g->square);
     for (int p = 0; p < (g->tissue.branched ? SN_PARTS : 1); p++) {
         const sn_exponentials *e = sn_region_memory(g, (sn_part)p);
         const double heads[] = {e->g_inf, e->viscous, (double)e->terms};
@@ -107,6 +108,7 @@ static int state_pieces(const sn_net *net, const sn_state *s, sn_piece *piece) {
         PIECE(omega2),
         PIECE(seen_omega2),
         PIECE(ruling_omega2),
+        PIECE(doubt),
         PIECE(touching),
         PIECE(steps),
         PIECE(check_in),

@@ -139,7 +139,7 @@ static void find_forces(const sn_net *net, sn_state *s, sn_memory_mode mode) {
                                 .factors = s->factors,
                                 .store = s->store,
                                 .parts = sn_state_parts(s),
-                                .upright = s->crushed,
+                                .upright = sn_state_is_upright(s),
                                 .out = &s->now,
                                 .team = s->team};
     sn_net_forces(net, &call);

@@ -9,14 +9,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "springs/tangent.h"
+#include "springs/vectors.h"
 
 //---- patterns ------------------------------------------------------------------------------------
-
-static int compare_int(const void *a, const void *b) {
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
 
 // pairs of the ends of springs: those that were given need not share a cell
 static void add_springs(const sn_net *net, sn_sparsity *p, int *fill) {
@@ -311,7 +308,7 @@ static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *re
                        const sn_tangent_memory *m, int slot, const sn_tangent_call *call) {
     const sn_net_data *data = &net->data[SN_DOUBLE];
     const double *stiffness = sn_parts_stiffness(net, call->parts, SN_DOUBLE);
-    const double k = stiffness[slot], B = region->exponent;
+    const double k = stiffness[slot];
     const double inverse = ((const double *)data->inverse)[slot];
     const size_t block = (size_t)slot / SN_BLOCK, lane = (size_t)slot % SN_BLOCK;
     if (!(k > 0)) return;
@@ -323,14 +320,8 @@ static void add_spring(const sn_net *net, sn_tangent *t, const sn_net_region *re
                call->u[4 * (size_t)end[1] + d] - call->u[4 * (size_t)end[0] + d];
         l2 += x[d] * x[d];
     }
-    double lambda = sqrt(l2 * inverse), s = lambda - 1.0, tension, slope;
-    if (s < 0) {
-        tension = (lambda - 1.0 / (lambda * lambda)) / 3.0;
-        slope = (1.0 + 2.0 / (lambda * lambda * lambda)) / 3.0;
-    } else {
-        tension = fabs(B * s) < 1e-12 ? s : expm1(B * s) / B;
-        slope = exp(B * s);
-    }
+    const sn_spring_law law = sn_net_spring_law(net, region, slot);
+    double lambda = sqrt(l2 * inverse), slope, tension = sn_spring_tension(&law, lambda, &slope);
     tension = sn_tangent_stress(m, (size_t)(slot - region->spring_block * SN_BLOCK), tension);
     double across = k * tension / lambda;
     double along = k * (m->alpha * slope - tension / lambda) / (lambda * lambda) * inverse;

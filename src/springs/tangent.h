@@ -70,12 +70,6 @@ static inline double sn_tangent_stress(const sn_tangent_memory *m, size_t at, do
     return m->history ? m->alpha * T + m->history[at] : T;
 }
 
-static inline double sn_dot(const double *a, const double *b, size_t n) {
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 /// What of a region's stress is where a solid law is, and how each part remembers.
 typedef struct sn_tangent_law {
     int first, splits;                      ///< of region->split

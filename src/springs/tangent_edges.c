@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/sort.h"
 #include "springs/tangent.h"
 
 /// Deformation of the cluster of one edge, and scratch for its stiffness.
@@ -144,11 +145,6 @@ void sn_tangent_add_edges(const sn_net *net, sn_tangent *t, const sn_net_region 
 }
 
 //---- pattern -------------------------------------------------------------------------------------
-
-static int compare_int(const void *a, const void *b) {
-    int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
 
 // edges whose cluster has each node: start (nodes + 1), item
 static sn_status list_clusters(const sn_net *net, struct sn_cluster *c, int **start, int **item) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "springs/tangent.h"
+#include "springs/vectors.h"
 
 static void hold(const sn_net *net, double *x) {
     for (int k = 0; k < net->fixed_count; k++)

@@ -180,6 +180,27 @@ static void test_gather(void **state) {
     }
 }
 
+/// The short way is the long way to the bit, up to its limit and not much further.
+static void test_expm1_near(void **state) {
+    (void)state;
+    const double limit = 0.34; // as wide.h promises
+    uint64_t seed = 5;
+    for (int far = 0; far < 2; far++) {
+        for (int i = 0; i < N; i++) {
+            x64[i] = far ? check_random(&seed, 0.35, 0.5) : draw(&seed, 1e-20, limit, 1);
+            x32[i] = (float)x64[i];
+        }
+        x64[0] = far ? 0.35 : limit;
+        row64[0](WIDE_expm1, N, x64, y64);
+        row64[0](WIDE_expm1_near, N, x64, other64);
+        row32[0](WIDE_expm1, N, x32, y32);
+        row32[0](WIDE_expm1_near, N, x32, other32);
+        int differ = 0;
+        for (int i = 0; i < N; i++) differ += y64[i] != other64[i] || y32[i] != other32[i];
+        assert_true(far ? differ > 0 : differ == 0);
+    }
+}
+
 /// Random numbers over the whole range, and every kind of special one.
 static void test_equal_bits(void **state) {
     (void)state;
@@ -232,9 +253,9 @@ static void test_choice(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_accuracy), cmocka_unit_test(test_special_values),
-        cmocka_unit_test(test_gather),   cmocka_unit_test(test_equal_bits),
-        cmocka_unit_test(test_choice),
+        cmocka_unit_test(test_accuracy),   cmocka_unit_test(test_special_values),
+        cmocka_unit_test(test_gather),     cmocka_unit_test(test_equal_bits),
+        cmocka_unit_test(test_expm1_near), cmocka_unit_test(test_choice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

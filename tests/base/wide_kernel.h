@@ -5,6 +5,7 @@
 #define WIDE_OPS(X)                                                                                \
     X(exp, wide_exp(x))                                                                            \
     X(expm1, wide_expm1(x))                                                                        \
+    X(expm1_near, wide_expm1_near(x))                                                              \
     X(phi1, wide_phi1(x))                                                                          \
     X(phi2, wide_phi2(x))                                                                          \
     X(log, wide_log(x))                                                                            \

@@ -1,42 +1,27 @@
 // Calibrated springs against closed forms and against quadratic elements.
 // SPDX-License-Identifier: Apache-2.0
-#include "check.h"
-
-#include "sinew/sinew.h"
+#include "build.h"
+#include "engines.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
+#define SQRT1_2 0.70710678118654752
 
 static sn_tissue tissue_of(const char *law, double shear, double bulk) {
-    sn_tissue t = sn_tissue_default();
-    t.law = sn_law_find(law);
-    sn_param_defaults(t.law->params, t.law->param_count, 0, t.value);
-    CHECK_OK(sn_tissue_set(&t, strcmp(law, "demiray") ? "shear_modulus" : "c", shear));
-    CHECK_OK(sn_tissue_set(&t, "bulk_modulus", bulk));
-    if (strcmp(law, "demiray") == 0) CHECK_OK(sn_tissue_set(&t, "b", 4));
-    return t;
+    return strcmp(law, "demiray") ? neo_hookean(shear, bulk) : demiray(shear, 4, bulk);
 }
 
 // Poisson's ratio 0.45; jitter: of the inner nodes, of the edge
 static sn_case *block(int per_side, sn_pattern pattern, double jitter, const char *law) {
-    sn_case *c;
     uint64_t seed = 11;
-    CHECK_OK(sn_case_create(&c));
-    c->shape = (sn_shape_def){.shape = SN_SHAPE_BLOCK,
-                              .pattern = pattern,
-                              .size = {size[0], size[1], size[2]},
-                              .cells = {2 * per_side, per_side, per_side}};
+    const sn_tissue t = tissue_of(law, 1e4 / 2.9, 1e4 / 0.3);
+    sn_case *c = make_block(size, (const int[]){2 * per_side, per_side, per_side}, pattern, &t);
     c->has_shape = !(jitter > 0);
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
     for (int i = 0; i < 3 * c->mesh->node_count; i++) {
         const double move = check_random(&seed, -jitter, jitter) * size[1] / per_side;
         if (c->mesh->node[i] > 1e-9 && c->mesh->node[i] < size[i % 3] - 1e-9)
             c->mesh->node[i] += move;
     }
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = tissue_of(law, 1e4 / 2.9, 1e4 / 0.3);
-    c->support_count = 1;
-    c->support = sn_alloc(1, sizeof *c->support);
-    c->support[0] = (sn_support){sn_mesh_surface(c->mesh, "left"), {true, true, true}};
+    add_support(c, "left", "xyz");
     c->until = c->output_every = 1;
     c->springs.rung = SN_RUNG_CENTRAL;
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
@@ -45,29 +30,14 @@ static sn_case *block(int per_side, sn_pattern pattern, double jitter, const cha
 }
 
 static void drive(sn_case *c, double x, double y, bool sides_free) {
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {x, y, 0},
-                           .free = {sides_free, false, sides_free}};
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){0, 1}, &c->load[0].factor));
-    c->probe_count = 1;
-    c->probe = sn_alloc(1, sizeof *c->probe);
-    c->probe[0] = (sn_probe){
-        .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", x, y, 0, 1);
+    load->free[0] = load->free[2] = sides_free;
+    add_probe(c, "pull", SN_PROBE_REACTION, "right", 0, 0, 0);
 }
-
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
 
 // history of a run; the column of the force in direction d
 static sn_record *run(const sn_case *c, engine *go, int d, const double **force) {
-    sn_record *history;
-    sn_run_summary s = {0};
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(go(c, &(sn_output){0}, &s, history));
-    if (!s.converged) print_message("%s\n", s.reason);
-    assert_true(s.converged);
+    sn_record *history = reaction(go, c);
     *force = history->series[1 + d].value;
     return history;
 }
@@ -256,8 +226,127 @@ static void finite_tension(void **state) {
     print_message("tension by 30 %%, exponential tissue, rms of the force: calibrated %.2f %%, "
                   "uncalibrated %.2f %%\n",
                   100 * error[0], 100 * error[1]);
-    assert_true(error[0] < 0.05 && error[0] < 0.6 * error[1]);
+    assert_true(error[0] < 0.04 && error[0] < 0.4 * error[1]); // 225 nodes
     sn_record_destroy(reference);
+    sn_case_destroy(c);
+}
+
+//---- fibres and matrix in one energy -------------------------------------------------------------
+
+// Fung's law with shear moduli alike and the first axis stiffer; bulk: over the shear modulus
+static sn_tissue fung(double along, double bulk) {
+    sn_tissue t = sn_tissue_default();
+    t.law = sn_law_find("fung");
+    sn_param_defaults(t.law->params, t.law->param_count, 0, t.value);
+    const double a[9] = {along, 6, 6, 0, 0, 0, 6, 6, 6};
+    t.value[0] = 1e3;
+    memcpy(t.value + 1, a, sizeof a);
+    CHECK_OK(sn_tissue_set(&t, "bulk_modulus", bulk * 3e3));
+    return t;
+}
+
+// The tensor of Fung's law is that of isotropic springs and of others along the stiffer axis, which
+// the lattice has edges or face diagonals for: class constants carry it without rest but for what a
+// change of volume feels, and even strains, which leave nothing to solve, are met.
+static void classes(void **state) {
+    (void)state;
+    static const double fibre[3][3] = {{1, 0, 0}, {0, 0, 1}, {SQRT1_2, SQRT1_2, 0}};
+    for (int k = 0; k < 4; k++) {
+        sn_case *c = block(2, k == 3 ? SN_PATTERN_BCC : SN_PATTERN_MIRRORED, 0, "neo-hookean");
+        const double bulk = 1e6;
+        c->tissue[0] = fung(15, bulk);
+        memcpy(c->fibre, fibre[k % 3], sizeof c->fibre);
+        sn_calibration r;
+        CHECK_OK(sn_calibrate_to(c, SN_CALIBRATION_FULL, 0.05, NULL, &r));
+        assert_int_equal(r.beyond, 0);
+        // the coupling of stretch and volume is of the order of one over sqrt(bulk)
+        CHECK_ABS(r.region[0].left[1], 0, 3e-3);
+        // of the energy of a strain only its square: the order of one over bulk, and 1e-6 of the
+        // solver, times up to 100 for a volume that is held
+        for (int t = 0; t < 6 && k < 3; t++) {
+            char name[SN_NAME_MAX];
+            snprintf(name, sizeof name, "held, %s", sn_net_response_name(t));
+            CHECK_ABS(error_of(&r, name), 0, 1e-4);
+        }
+        double low = (double)INFINITY, high = 0;
+        for (int i = 0; i < r.set->count; i++) {
+            low = fmin(low, r.set->stiffness[i]);
+            high = fmax(high, r.set->stiffness[i]);
+        }
+        assert_true(high > 2 * low); // and not the isotropic net's
+        sn_calibration_destroy(&r);
+        sn_case_destroy(c);
+    }
+}
+
+// Tension of Fung's tissue by forces to some 20 % along its stiffer axis: the way of the loaded
+// end, rms over its largest, against quadratic elements.
+static void finite_fung(void **state) {
+    (void)state;
+    sn_case *c = block(4, SN_PATTERN_MIRRORED, 0, "neo-hookean");
+    c->tissue[0] = fung(9, 111); // Poisson's ratio 0.4955
+    c->fibre[0] = 1;
+    drive(c, 6e3, 0, false);
+    c->load[0].kind = SN_LOAD_TRACTION;
+    c->probe[0] = (sn_probe){
+        .name = "end", .kind = SN_PROBE_POINT, .point = {size[0], size[1] / 2, size[2] / 2}};
+    c->output_every = 0.5;
+    c->continuum.steps = 2;
+    const double *truth, *way;
+    sn_record *reference = run(c, sn_continuum_run, 0, &truth);
+    sn_net *net;
+    CHECK_FAILS(sn_net_create(c, &net), SN_E_UNSUPPORTED, "in one energy");
+    sn_calibration r;
+    CHECK_OK(sn_calibrate(c, SN_CALIBRATION_FULL, NULL, &r));
+    c->springs_given = r.set;
+    r.set = NULL;
+    sn_record *history = run(c, sn_springs_run, 0, &way);
+    double sum = 0;
+    const int last = reference->rows - 1;
+    for (int i = 1; i <= last; i++) sum += (way[i] - truth[i]) * (way[i] - truth[i]) / last;
+    const double error = sqrt(sum) / truth[last];
+    print_message("tension of Fung's tissue to %.1f %%: rms of the way %.2f %%\n",
+                  100 * truth[last] / size[0], 100 * error);
+    assert_true(truth[last] > 0.2 * size[0]);
+    assert_true(error < 0.05); // what is asked of meshes of 3,000 nodes; here 225
+    sn_record_destroy(history);
+    sn_record_destroy(reference);
+    sn_calibration_destroy(&r);
+    sn_case_destroy(c);
+}
+
+// On a mesh that is no lattice the fit at the nodes aims at the same tensor; baselines take their
+// modulus from the tissue and their exponent from its stress.
+static void fung_anywhere(void **state) {
+    (void)state;
+    sn_case *c = block(4, SN_PATTERN_MIRRORED, 0.12, "neo-hookean");
+    c->tissue[0] = fung(12, 10);
+    sn_calibration r;
+    c->fibre[1] = 1;
+    CHECK_OK(sn_calibrate_to(c, SN_CALIBRATION_FULL, 0.05, NULL, &r));
+    double worst = 0;
+    for (int t = 0; t < 6; t++) {
+        char name[SN_NAME_MAX];
+        snprintf(name, sizeof name, "held, %s", sn_net_response_name(t));
+        worst = fmax(worst, fabs(error_of(&r, name)));
+    }
+    // the tissue is up to twice as stiff along y as across; at 225 nodes
+    print_message("irregular, Fung: held stretches and shears within %.2f %%\n", 100 * worst);
+    assert_true(worst < 0.06 && r.beyond > 0);
+    sn_calibration_destroy(&r);
+    CHECK_OK(sn_calibrate_to(c, SN_CALIBRATION_UNIFORM, 0.2, NULL, &r));
+    assert_true(r.set->exponent[0] > 1); // it stiffens
+    CHECK_REL(r.set->exponent[0], r.region[0].exponent, 0);
+    sn_calibration_destroy(&r);
+    CHECK_FAILS(sn_calibrate_to(c, SN_CALIBRATION_AFFINE, 0.2, NULL, &r), SN_E_UNSUPPORTED,
+                "sinew calibrate");
+    c->fibres.rule = SN_FIBRES_AROUND;
+    CHECK_FAILS(sn_calibrate_to(c, SN_CALIBRATION_FULL, 0.2, NULL, &r), SN_E_UNSUPPORTED,
+                "turn from cell to cell");
+    c->fibres.rule = SN_FIBRES_ALIKE;
+    c->tissue[0] = fung(12, 1.2);
+    CHECK_FAILS(sn_calibrate_to(c, SN_CALIBRATION_FULL, 0.2, NULL, &r), SN_E_UNSUPPORTED,
+                "bulk modulus");
     sn_case_destroy(c);
 }
 
@@ -318,6 +407,9 @@ int main(void) {
         cmocka_unit_test(nearer_than_published),
         cmocka_unit_test(scale_removes_bias),
         cmocka_unit_test(finite_tension),
+        cmocka_unit_test(classes),
+        cmocka_unit_test(finite_fung),
+        cmocka_unit_test(fung_anywhere),
         cmocka_unit_test(regions),
         cmocka_unit_test(refusals),
     };

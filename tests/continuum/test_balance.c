@@ -1,8 +1,6 @@
 // Balance and tangent of single states: patch test, differences, Newton's order, rigid rotation.
 // SPDX-License-Identifier: Apache-2.0
-#include "body.h"
-#include "continuum/measure.h"
-#include "continuum/newton.h"
+#include "solve.h"
 
 static const sn_element elements[] = {SN_ELEMENT_P1, SN_ELEMENT_P2, SN_ELEMENT_P2P1};
 
@@ -57,21 +55,14 @@ static void patch(sn_element element, const sn_tissue *tissue, bool fibres) {
         memcpy(c->fibre, fibre, sizeof fibre);
     }
     body_support(c, "boundary", true, true, true);
-    sn_fe_problem *p;
-    sn_fe_newton newton;
-    sn_fe_outcome out;
-    sn_fe_measure *m;
-    sn_record *history;
-    CHECK_OK(sn_fe_problem_create(c, 1, &p));
-    CHECK_OK(sn_fe_newton_init(&newton, p, 1e-11));
-    double *x = sn_alloc((size_t)p->space->dofs, sizeof *x);
-    sn_fe_problem_begin(p, (sn_fe_level){1, 1, 1});
+    solve one = solve_begin(c, 1e-11);
+    sn_fe_problem *const p = one.p;
+    const double *const x = one.x;
     for (int a = 0; a < p->space->nodes; a++)
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
                 p->prescribed[3 * a + i] += H[i][j] * p->space->rest[3 * a + j];
-    CHECK_OK(sn_fe_newton_solve(&newton, true, x, &out));
-    assert_true(out.converged);
+    solve_step(&one);
     int inside = 0;
     double worst = 0;
     for (int d = 0; d < 3 * p->space->nodes; d++) {
@@ -82,11 +73,8 @@ static void patch(sn_element element, const sn_tissue *tissue, bool fibres) {
     CHECK_ABS(worst / 0.02, 0, 1e-10);
 
     // strain of every cell, and stress equal in all cells
-    CHECK_OK(sn_record_create("test", &history));
-    CHECK_OK(sn_case_history_columns(c, history));
-    CHECK_OK(sn_fe_measure_create(p, history, true, &m));
-    const sn_output output = {.frame = nothing};
-    CHECK_OK(sn_fe_measure_frame(m, p, x, &output));
+    solve_frame(&one, &(sn_output){.frame = nothing});
+    const sn_fe_measure *const m = one.m;
     static const int pair[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
     for (int k = 0; k < 6; k++) {
         int i = pair[k][0], j = pair[k][1];
@@ -102,17 +90,13 @@ static void patch(sn_element element, const sn_tissue *tissue, bool fibres) {
                   1e-9); // the bulk modulus multiplies errors of the volume by 50
     }
     check_patch_fields(c->mesh, m, H);
-    sn_fe_measure_destroy(m, c);
-    sn_record_destroy(history);
-    sn_free(x);
-    sn_fe_newton_free(&newton);
-    sn_fe_problem_destroy(p);
+    solve_end(&one);
     sn_case_destroy(c);
 }
 
 static void patch_test(void **state) {
     (void)state;
-    sn_tissue isotropic = body_neo_hookean(1700, 9.1e4), fibrous = body_guccione(900, 5e4);
+    sn_tissue isotropic = neo_hookean(1700, 9.1e4), fibrous = guccione(900, 5e4);
     for (int k = 0; k < 3; k++) {
         patch(elements[k], &isotropic, false);
         patch(elements[k], &fibrous, true);
@@ -204,8 +188,8 @@ static void tangent(void **state) {
     (void)state;
     static const double prony[] = {0.3, 0.25, 0.2, 3.0};
     // fibres in all directions, since the tangent of others jumps where they go slack
-    sn_tissue t[4] = {body_neo_hookean(1300, 2.1e4), body_demiray(1100, 1.7, 3e4),
-                      body_guccione(700, 4e4), body_artery(1.0 / 3, 3e4)};
+    sn_tissue t[4] = {neo_hookean(1300, 2.1e4), demiray(1100, 1.7, 3e4), guccione(700, 4e4),
+                      body_artery(1.0 / 3, 3e4)};
     body_set_memory(t + 1, "prony", 2, prony, 4);
     body_set_memory(t + 2, "prony", 2, prony, 4);
     for (int e = 0; e < 3; e++)
@@ -217,12 +201,12 @@ static void tangent(void **state) {
             body_press(c, "top", 4e4, NULL); // about the stiffness: it cannot hide
             check_tangent(c, 0.01, 2000, (uint64_t)(117 + 3 * e + k), false);
             if (k >= 2) { // axes of their own in every cell
-                body_turn(c, 7);
+                turn_fibres(c, 7);
                 check_tangent(c, 0.01, 2000, (uint64_t)(217 + 3 * e + k), false);
             }
             sn_case_destroy(c);
         }
-    sn_tissue incompressible = body_neo_hookean(1300, (double)INFINITY);
+    sn_tissue incompressible = neo_hookean(1300, (double)INFINITY);
     sn_case *c = body_block(0.03, 0.02, 0.01, 2, 1, 1, &incompressible, SN_ELEMENT_P2P1);
     body_support(c, "left", true, true, true);
     check_tangent(c, 0.01, 2000, 5, true);
@@ -233,7 +217,7 @@ static void tangent(void **state) {
 // goes.
 static void tangent_of_contact(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(1300, 2.1e4);
+    sn_tissue t = neo_hookean(1300, 2.1e4);
     for (int e = 0; e < 3; e++) {
         sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, elements[e]);
         body_support(c, "bottom", true, true, true);
@@ -250,7 +234,7 @@ static void tangent_of_contact(void **state) {
 // convergence would break that bound by orders of magnitude.
 static void newton_is_quadratic(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(1000, 1e4);
+    sn_tissue t = neo_hookean(1000, 1e4);
     for (int e = 0; e < 3; e++)
         for (int follower = 0; follower < 2; follower++) {
             sn_case *c = body_block(0.02, 0.02, 0.02, 2, 2, 2, &t, elements[e]);
@@ -294,7 +278,7 @@ static void rotation(void **state) {
     (void)state;
     static const double R[3][3] = {{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}};
     static const double prony[] = {0.3, 0.25, 0.2, 3.0};
-    sn_tissue t = body_guccione(700, 4e4);
+    sn_tissue t = guccione(700, 4e4);
     body_set_memory(&t, "prony", 2, prony, 4);
     for (int e = 0; e < 3; e++) {
         uint64_t seed = (uint64_t)(91 + e);

@@ -47,7 +47,7 @@ static sn_case *tube_of(const sn_shape_def *def, const sn_tissue *t, sn_element 
     c->has_shape = true;
     body_support(c, "bottom", false, false, true);
     body_support(c, "top", false, false, true);
-    body_press(c, "inner", p, body_ramp(0, 1));
+    body_press(c, "inner", p, make_ramp(0, 1));
     body_probe(c, "wall", def->inner_radius, 0, def->length / 2);
     return c;
 }
@@ -58,7 +58,7 @@ static void small_tube(void **state) {
     const double a = 0.01, b = 0.02, G = 3000, K = 6000, p = 0.03;
     const double E = young_of(G, K), nu = E / (2 * G) - 1;
     double exact = (1 + nu) / E * p * a * a / (b * b - a * a) * ((1 - 2 * nu) * a + b * b / a);
-    sn_tissue t = body_neo_hookean(G, K);
+    sn_tissue t = neo_hookean(G, K);
     sn_shape_def def = {.shape = SN_SHAPE_TUBE,
                         .inner_radius = a,
                         .outer_radius = b,
@@ -89,7 +89,7 @@ static void large_tube(void **state) {
         double R = Ri + (Ro - Ri) * (k + 0.5) / n, l2 = 1 - a / (R * R);
         W += mu / 2 * (l2 + 1 / l2 - 2) * 2 * acos(-1.0) * R * (Ro - Ri) / n * length;
     }
-    sn_tissue t = body_neo_hookean(mu, (double)INFINITY);
+    sn_tissue t = neo_hookean(mu, (double)INFINITY);
     sn_shape_def def = {.shape = SN_SHAPE_TUBE,
                         .inner_radius = Ri,
                         .outer_radius = Ro,
@@ -106,7 +106,7 @@ static void large_tube(void **state) {
 static void hanging_bar(void **state) {
     (void)state;
     const double mu = 5e7, L = 0.1, g = 9.81, A = 4e-4;
-    sn_tissue t = body_neo_hookean(mu, mu * 2 / 3);
+    sn_tissue t = neo_hookean(mu, mu * 2 / 3);
     double W = pow(1000 * g, 2) * A * pow(L, 3) / (6 * 2 * mu);
     sn_case *c = body_block(0.02, 0.02, L, 1, 1, 4, &t, SN_ELEMENT_P1);
     body_support(c, "top", true, true, true);
@@ -124,12 +124,12 @@ static void hanging_bar(void **state) {
 static void clamped(void **state) {
     (void)state;
     const double pull = 0.87773, energy = 2.86297e-3;
-    sn_tissue t = body_neo_hookean(3000, 15e3);
+    sn_tissue t = neo_hookean(3000, 15e3);
     for (int e = 0; e < 3; e++) {
         int n = e == SN_ELEMENT_P1 ? 3 : 2;
         sn_case *c = body_block(0.02, 0.02, 0.02, n, n, n, &t, (sn_element)e);
         body_support(c, "left", true, true, true);
-        body_move(c, "right", 0.006, 0, 0, body_ramp(0, 1));
+        body_move(c, "right", 0.006, 0, 0, make_ramp(0, 1));
         body_reaction(c, "pull", "right");
         c->continuum.steps = 2;
         hold("clamped cube, reaction", c, sn_continuum_refine, 2, "pull_fx", pull, 4);

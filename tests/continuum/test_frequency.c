@@ -6,7 +6,7 @@
 static void steps_grow(void **state) {
     (void)state;
     const double prony[] = {0.6, 0.02}, modulus = 2e4 + 4.0 * 3000 / 3;
-    sn_tissue t = body_neo_hookean(3000, 2e4);
+    sn_tissue t = neo_hookean(3000, 2e4);
     body_set_memory(&t, "prony", 1, prony, 2);
     long steps[2];
     double end[2];
@@ -20,7 +20,7 @@ static void steps_grow(void **state) {
         sn_record *r = body_run(c, NULL, &s);
         if (getenv("SINEW_SHOW")) print_message("%ld steps; %s\n", s.steps, s.note);
         steps[k] = s.steps;
-        end[k] = body_last(r, "tip_ux");
+        end[k] = last_value(r, "tip_ux");
         sn_record_destroy(r);
         sn_case_destroy(c);
     }
@@ -51,7 +51,7 @@ static double period_of(const sn_record *r, const char *column, double level) {
 static void bar_frequencies(void **state) {
     (void)state;
     const double G = 3000, K = 2e4, L = 0.1;
-    sn_tissue t = body_neo_hookean(G, K);
+    sn_tissue t = neo_hookean(G, K);
     for (int k = 0; k < 6; k++) {
         int axis = k / 3;
         double modulus = axis ? G : K + 4 * G / 3, T = 4 * L / sqrt(modulus / DENSITY);
@@ -81,12 +81,12 @@ static void bending_frequency(void **state) {
     const double G = 3000, E = 2 * G, L = 0.1, h = 0.005;
     double T =
         2 * acos(-1.0) / (1.875104 * 1.875104 * sqrt(E * h * h / (12 * DENSITY * pow(L, 4))));
-    sn_tissue t = body_neo_hookean(G, 2 * G / 3);
+    sn_tissue t = neo_hookean(G, 2 * G / 3);
     for (int e = 1; e < 3; e++) {
         sn_case *c = body_block(L, h, h, 12, 1, 1, &t, elements[e]);
         double traction = 1e-5 * E * h / L;
         body_support(c, "left", true, true, true);
-        body_pull(c, "right", 0, 0, traction, body_ramp(0, T / 2));
+        body_pull(c, "right", 0, 0, traction, make_ramp(0, T / 2));
         c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
         c->continuum.tolerance = 1e-9;
         c->continuum.step_tolerance = SN_STEP_TOLERANCE;

@@ -184,7 +184,7 @@ static void manufactured(void **state) {
     for (int e = 0; e < 3; e++) {
         bool mixed = e == SN_ELEMENT_P2P1;
         made m = {.bulk = mixed ? 1e3 * MU : 3 * MU, .swell = mixed ? 1e-3 : 0.1};
-        m.tissue = body_neo_hookean(MU, m.bulk);
+        m.tissue = neo_hookean(MU, m.bulk);
         int n = e == SN_ELEMENT_P1 ? 4 : 3;
         double coarse[3], fine[3], expected = e == SN_ELEMENT_P1 ? 2 : 3;
         solve_made(&m, (sn_element)e, n, coarse);
@@ -209,7 +209,7 @@ static void stated_error(void **state) {
     for (int e = 0; e < 3; e++) {
         made m = {.bulk = e == SN_ELEMENT_P2P1 ? 1e3 * MU : 3 * MU,
                   .swell = e == SN_ELEMENT_P2P1 ? 1e-3 : 0.1};
-        m.tissue = body_neo_hookean(MU, m.bulk);
+        m.tissue = neo_hookean(MU, m.bulk);
         int most = e == SN_ELEMENT_P1 ? 3 : 2;
         sn_refined q = {0};
         for (int k = 0; k < most; k++) {
@@ -234,7 +234,7 @@ static void stated_error(void **state) {
 
 // Torque about the axis and push along it on the top of a twisted cylinder, ends rigid.
 static void twist(int around, double R, double length, double angle, double *torque, double *push) {
-    sn_tissue t = body_neo_hookean(MU, (double)INFINITY);
+    sn_tissue t = neo_hookean(MU, (double)INFINITY);
     sn_shape_def def = {.shape = SN_SHAPE_CYLINDER,
                         .radius = R,
                         .length = length,
@@ -310,7 +310,7 @@ static double tube_pressure(double c, double b, double Ri, double Ro, double ri)
 }
 
 static double inner_radius(int around, double c, double b, double Ri, double Ro, double pressure) {
-    sn_tissue t = body_demiray(c, b, (double)INFINITY);
+    sn_tissue t = demiray(c, b, (double)INFINITY);
     sn_shape_def def = {.shape = SN_SHAPE_TUBE,
                         .inner_radius = Ri,
                         .outer_radius = Ro,
@@ -319,12 +319,12 @@ static double inner_radius(int around, double c, double b, double Ri, double Ro,
     sn_case *body = body_case(&def, &t, SN_ELEMENT_P2P1);
     body_support(body, "bottom", false, false, true);
     body_support(body, "top", false, false, true);
-    body_press(body, "inner", pressure, body_ramp(0, 1));
+    body_press(body, "inner", pressure, make_ramp(0, 1));
     body_probe(body, "wall", Ri, 0, 1e-3);
     body->continuum.steps = 10;
     sn_run_summary summary;
     sn_record *r = body_run(body, NULL, &summary);
-    double radius = Ri + body_last(r, "wall_ux");
+    double radius = Ri + last_value(r, "wall_ux");
     sn_record_destroy(r);
     sn_case_destroy(body);
     return radius;

@@ -5,7 +5,7 @@
 static const double spectrum[3] = {0.23, 0.013, 90}; // c, tau1, tau2
 
 static sn_case *cube(sn_element element, double bulk) {
-    sn_tissue t = body_neo_hookean(3000, bulk);
+    sn_tissue t = neo_hookean(3000, bulk);
     body_set_memory(&t, "fung-spectrum", 0, spectrum, 3);
     sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, element);
     body_rollers(c);
@@ -37,7 +37,7 @@ static void relaxation(void **state) {
         double bulk = k == 3 ? (double)INFINITY : 6000;
         double young = k == 3 ? 9000 : 9 * bulk * 3000 / (3 * bulk + 3000);
         sn_case *c = cube(elements[k], bulk);
-        body_move(c, "right", 1e-7, ANY, ANY, body_ramp(0, 0.5));
+        body_move(c, "right", 1e-7, ANY, ANY, make_ramp(0, 0.5));
         body_reaction(c, "pull", "right");
         sn_run_summary summary;
         sn_record *r = body_run(c, NULL, &summary);
@@ -82,7 +82,7 @@ static void creep(void **state) {
     for (int k = 0; k < 2; k++) {
         sn_case *c = cube(k ? SN_ELEMENT_P2P1 : SN_ELEMENT_P1, 6000);
         double young = 9.0 * 6000 * 3000 / (3 * 6000 + 3000);
-        body_pull(c, "right", 1e-5 * young, 0, 0, body_ramp(0, 0.5));
+        body_pull(c, "right", 1e-5 * young, 0, 0, make_ramp(0, 0.5));
         body_probe(c, "tip", 0.01, 0.01, 0.01);
         c->continuum.steps = 20;
         sn_run_summary summary;
@@ -158,7 +158,7 @@ static void voigt(void **state) {
     const double tau = 0.3;
     sn_case *c = cube(SN_ELEMENT_P1, 6000);
     body_set_memory(c->tissue, "voigt", 0, &tau, 1);
-    body_move(c, "right", 1e-7, ANY, ANY, body_ramp(0, 2));
+    body_move(c, "right", 1e-7, ANY, ANY, make_ramp(0, 2));
     body_reaction(c, "pull", "right");
     c->until = 4;
     sn_run_summary summary;

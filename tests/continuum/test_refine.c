@@ -24,7 +24,7 @@ static void tube(void **state) {
                         .length = 0.004,
                         .cells = {2, 12, 1}};
     for (int e = 0; e < 2; e++) {
-        sn_tissue t = body_neo_hookean(G, K);
+        sn_tissue t = neo_hookean(G, K);
         sn_case *c = body_case(&def, &t, e ? SN_ELEMENT_P2 : SN_ELEMENT_P1);
         c->shape = def;
         c->has_shape = true;
@@ -46,7 +46,7 @@ static void tube(void **state) {
                           "errors %.2g %.2g %.2g\n",
                           s.model, exact, q->value[0], q->value[1], q->value[2], q->order,
                           q->extrapolated, q->error[0], q->error[1], q->error[2]);
-        CHECK_REL(q->value[0], body_last(r, "wall_ux"), 1e-15); // the case's own mesh
+        CHECK_REL(q->value[0], last_value(r, "wall_ux"), 1e-15); // the case's own mesh
         assert_int_equal(s.nodes, f.run[0].nodes);
         assert_true(f.run[2].cells == 64 * f.run[0].cells);
         assert_true(q->observed && q->order > 1.4 && q->order < 2.6);
@@ -67,11 +67,11 @@ static void tube(void **state) {
 // A state that every mesh holds exactly: no order to observe, and no error but the solver's.
 static void homogeneous(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(3000, 6000);
+    sn_tissue t = neo_hookean(3000, 6000);
     for (int meshes = 2; meshes <= 3; meshes++) {
         sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
         body_rollers(c);
-        body_move(c, "right", 0.002, ANY, ANY, body_ramp(0, 1));
+        body_move(c, "right", 0.002, ANY, ANY, make_ramp(0, 1));
         body_reaction(c, "pull", "right"); // no has_shape: the mesh is split
         sn_record *r;
         sn_run_summary s;
@@ -95,10 +95,10 @@ static void homogeneous(void **state) {
 // A finer mesh that does not get to the end is named; the case's own results stay.
 static void gives_up(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 1e4);
+    sn_tissue t = neo_hookean(2000, 1e4);
     sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
     body_support(c, "bottom", true, true, true);
-    body_move(c, "top", 0, 0, -0.012, body_ramp(0, 1));
+    body_move(c, "top", 0, 0, -0.012, make_ramp(0, 1));
     sn_record *r;
     sn_run_summary s;
     sn_refinement f;

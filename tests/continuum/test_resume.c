@@ -31,7 +31,7 @@ static sn_status keep_state(void *context, const void *bytes, size_t count) {
 // by accuracy, 2: dynamic incompressible
 static sn_case *course(int kind) {
     const double prony[] = {0.4, 0.05};
-    sn_tissue t = body_neo_hookean(3000, kind == 2 ? (double)INFINITY : 2e4);
+    sn_tissue t = neo_hookean(3000, kind == 2 ? (double)INFINITY : 2e4);
     if (kind < 2) body_set_memory(&t, "prony", 1, prony, 2);
     sn_case *c = body_block(0.02, 0.02, 0.01, 3, 3, 2, &t, kind ? SN_ELEMENT_P2P1 : SN_ELEMENT_P1);
     body_support(c, "bottom", true, true, true);
@@ -45,7 +45,7 @@ static sn_case *course(int kind) {
                                              .path = path,
                                              .friction = 0.3};
     } else {
-        body_pull(c, "right", 100, 0, 200, body_ramp(0, 0.03));
+        body_pull(c, "right", 100, 0, 200, make_ramp(0, 0.03));
         c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
     }
     c->until = kind ? 0.05 : 1;
@@ -122,10 +122,10 @@ static void goes_on(void **state) {
 static void last_state(void **state) {
     (void)state;
     for (int dynamic = 0; dynamic < 2; dynamic++) {
-        sn_tissue t = body_neo_hookean(2000, 1e4);
+        sn_tissue t = neo_hookean(2000, 1e4);
         sn_case *c = body_block(0.01, 0.01, 0.01, 2, 2, 2, &t, SN_ELEMENT_P1);
         body_support(c, "bottom", true, true, true);
-        body_move(c, "top", 0, 0, -0.012, body_ramp(0, 1));
+        body_move(c, "top", 0, 0, -0.012, make_ramp(0, 1));
         body_reaction(c, "floor", "bottom");
         if (dynamic) c->continuum.analysis = SN_ANALYSIS_DYNAMIC;
         c->continuum.steps = 10;
@@ -141,7 +141,7 @@ static void last_state(void **state) {
         assert_int_equal(r->rows, 2);
         CHECK_ABS(s.last, summary.simulated_s, 1e-12);
         assert_true(s.last > 0.1 && s.last < 0.9);
-        assert_true(body_last(r, "floor_fz") > 0.05); // it pushes up
+        assert_true(last_value(r, "floor_fz") > 0.05); // it pushes up
         sn_record_destroy(r);
         sn_case_destroy(c);
     }

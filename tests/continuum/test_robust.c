@@ -6,6 +6,13 @@ static void defaults(sn_case *c) {
     c->continuum = sn_continuum_def_default();
 }
 
+// all but the element by default, its left side held
+static void hold(sn_case *c, sn_element element) {
+    defaults(c);
+    c->continuum.element = element;
+    body_support(c, "left", true, true, true);
+}
+
 static void show(const char *what, const sn_run_summary *s) {
     if (getenv("SINEW_SHOW"))
         print_message("%s (%s): %ld steps, %d iterations, %d cutbacks %s\n", what, s->model,
@@ -18,17 +25,15 @@ static void large_strain(void **state) {
     static const double by[] = {0.02, -0.01};
     for (int k = 0; k < 2; k++)
         for (int e = 0; e < 3; e++) {
-            sn_tissue t = body_neo_hookean(3000, 15e3);
+            sn_tissue t = neo_hookean(3000, 15e3);
             sn_case *c = body_block(0.02, 0.02, 0.02, 3, 3, 3, &t, SN_ELEMENT_P1);
-            defaults(c);
-            c->continuum.element = (sn_element)e;
-            body_support(c, "left", true, true, true);
-            body_move(c, "right", by[k], 0, 0, body_ramp(0, 1));
+            hold(c, (sn_element)e);
+            body_move(c, "right", by[k], 0, 0, make_ramp(0, 1));
             body_reaction(c, "pull", "right");
             sn_run_summary s;
             sn_record *r = body_run(c, NULL, &s);
             show(k ? "half" : "twice", &s);
-            assert_true(body_last(r, "pull_fx") * by[k] > 0);
+            assert_true(last_value(r, "pull_fx") * by[k] > 0);
             sn_record_destroy(r);
             sn_case_destroy(c);
         }
@@ -37,17 +42,17 @@ static void large_strain(void **state) {
 // An exponential law far into its steep part: the traction is 1000 times c, in one go.
 static void steep(void **state) {
     (void)state;
-    sn_tissue t = body_demiray(500, 20, (double)INFINITY);
+    sn_tissue t = demiray(500, 20, (double)INFINITY);
     for (int k = 0; k < 2; k++) { // ramped, and at once at time 0
         sn_case *c = body_block(0.02, 0.01, 0.01, 2, 1, 1, &t, SN_ELEMENT_P2P1);
         defaults(c);
         body_support(c, "left", true, true, true);
-        body_pull(c, "right", 5e5, 0, 0, k ? NULL : body_ramp(0, 1));
+        body_pull(c, "right", 5e5, 0, 0, k ? NULL : make_ramp(0, 1));
         body_reaction(c, "wall", "left");
         sn_run_summary s;
         sn_record *r = body_run(c, NULL, &s);
         show("steep", &s);
-        CHECK_REL(body_last(r, "wall_fx"), -50, 1e-6);
+        CHECK_REL(last_value(r, "wall_fx"), -50, 1e-6);
         sn_record_destroy(r);
         sn_case_destroy(c);
     }
@@ -57,13 +62,11 @@ static void steep(void **state) {
 // may have forces beyond all measure at the wall, beside which no other residual would show.
 static void steep_compressible(void **state) {
     (void)state;
-    sn_tissue t = body_demiray(500, 20, 5e4);
+    sn_tissue t = demiray(500, 20, 5e4);
     for (int e = 0; e < 2; e++) {
         sn_case *c = body_block(0.04, 0.01, 0.01, 8, 2, 2, &t, (sn_element)e);
-        defaults(c);
-        c->continuum.element = (sn_element)e;
-        body_support(c, "left", true, true, true);
-        body_pull(c, "right", 5e5, 0, 0, body_ramp(0, 1));
+        hold(c, (sn_element)e);
+        body_pull(c, "right", 5e5, 0, 0, make_ramp(0, 1));
         body_reaction(c, "wall", "left");
         c->output_every = 0.25;
         sn_run_summary s;
@@ -82,17 +85,16 @@ static void nearly_incompressible(void **state) {
     double tip[2];
     for (int k = 0; k < 2; k++) {
         double nu = 0.4999, G = 3000;
-        sn_tissue t =
-            body_neo_hookean(G, k ? (double)INFINITY : 2 * G * (1 + nu) / (3 * (1 - 2 * nu)));
+        sn_tissue t = neo_hookean(G, k ? (double)INFINITY : 2 * G * (1 + nu) / (3 * (1 - 2 * nu)));
         sn_case *c = body_block(0.04, 0.01, 0.01, 4, 1, 1, &t, SN_ELEMENT_P2P1);
         defaults(c);
         body_support(c, "left", true, true, true);
-        body_pull(c, "right", 0, 0, 60, body_ramp(0, 1));
+        body_pull(c, "right", 0, 0, 60, make_ramp(0, 1));
         body_probe(c, "tip", 0.04, 0.005, 0.005);
         sn_run_summary s;
         sn_record *r = body_run(c, NULL, &s);
         show("nu", &s);
-        tip[k] = body_last(r, "tip_uz");
+        tip[k] = last_value(r, "tip_uz");
         sn_record_destroy(r);
         sn_case_destroy(c);
     }
@@ -103,18 +105,16 @@ static void nearly_incompressible(void **state) {
 // Elements without a pressure of their own get to the end too, too stiff as they are (they lock).
 static void nearly_incompressible_locks(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(3000, 15e6);
+    sn_tissue t = neo_hookean(3000, 15e6);
     for (int e = 0; e < 2; e++) {
         sn_case *c = body_block(0.04, 0.01, 0.01, 4, 1, 1, &t, (sn_element)e);
-        defaults(c);
-        c->continuum.element = (sn_element)e;
-        body_support(c, "left", true, true, true);
-        body_pull(c, "right", 0, 0, 60, body_ramp(0, 1));
+        hold(c, (sn_element)e);
+        body_pull(c, "right", 0, 0, 60, make_ramp(0, 1));
         body_reaction(c, "wall", "left");
         sn_run_summary s;
         sn_record *r = body_run(c, NULL, &s);
         show("nu", &s);
-        CHECK_REL(body_last(r, "wall_fz"), -60e-4, 1e-6);
+        CHECK_REL(last_value(r, "wall_fz"), -60e-4, 1e-6);
         sn_record_destroy(r);
         sn_case_destroy(c);
     }
@@ -125,19 +125,17 @@ static void nearly_incompressible_locks(void **state) {
 static void sheet_drawn(void **state) {
     (void)state;
     for (int e = 0; e < 3; e++) {
-        sn_tissue t = body_neo_hookean(1e5, 5e5);
+        sn_tissue t = neo_hookean(1e5, 5e5);
         sn_case *c = body_block(0.1, 0.02, 0.001, 10, 2, 1, &t, (sn_element)e);
-        defaults(c);
-        c->continuum.element = (sn_element)e;
-        body_support(c, "left", true, true, true);
-        body_move(c, "right", 0.05, 0, 0, body_ramp(0, 1));
+        hold(c, (sn_element)e);
+        body_move(c, "right", 0.05, 0, 0, make_ramp(0, 1));
         body_reaction(c, "pull", "right");
         sn_run_summary s;
         sn_record *r = body_run(c, NULL, &s);
         show("sheet drawn", &s);
         // 2e-5 m2 of nominal stress between mu (l - l^-2) and that of a sheet that keeps its width
         double low = 1e5 * (1.5 - 1 / 2.25) * 2e-5, high = 1.6 * low;
-        assert_true(body_last(r, "pull_fx") > 0.9 * low && body_last(r, "pull_fx") < high);
+        assert_true(last_value(r, "pull_fx") > 0.9 * low && last_value(r, "pull_fx") < high);
         sn_record_destroy(r);
         sn_case_destroy(c);
     }
@@ -146,7 +144,7 @@ static void sheet_drawn(void **state) {
 // A sheet of 1:100 in one layer of cells, bent by gravity to several times its thickness.
 static void thin_sheet(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(1e5, 5e5);
+    sn_tissue t = neo_hookean(1e5, 5e5);
     sn_case *c = body_block(0.1, 0.02, 0.001, 12, 2, 1, &t, SN_ELEMENT_P2P1);
     defaults(c);
     body_support(c, "left", true, true, true);
@@ -155,7 +153,7 @@ static void thin_sheet(void **state) {
     sn_run_summary s;
     sn_record *r = body_run(c, NULL, &s);
     show("sheet", &s);
-    assert_true(body_last(r, "tip_uz") < -0.01);
+    assert_true(last_value(r, "tip_uz") < -0.01);
     sn_record_destroy(r);
     sn_case_destroy(c);
 }
@@ -164,7 +162,7 @@ static void thin_sheet(void **state) {
 // way out, the last state kept.
 static void limit_point(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(3000, (double)INFINITY);
+    sn_tissue t = neo_hookean(3000, (double)INFINITY);
     sn_shape_def def = {.shape = SN_SHAPE_TUBE,
                         .inner_radius = 0.01,
                         .outer_radius = 0.012,
@@ -174,7 +172,7 @@ static void limit_point(void **state) {
     defaults(c);
     body_support(c, "bottom", false, false, true);
     body_support(c, "top", false, false, true);
-    body_press(c, "inner", 5000, body_ramp(0, 1));
+    body_press(c, "inner", 5000, make_ramp(0, 1));
     sn_run_summary s;
     sn_record *r;
     CHECK_OK(sn_record_create("balloon", &r));
@@ -190,7 +188,7 @@ static void limit_point(void **state) {
 
 // Two blocks in one mesh, one of which nothing holds.
 static sn_case *with_island(void) {
-    sn_tissue t = body_neo_hookean(3000, 15e3);
+    sn_tissue t = neo_hookean(3000, 15e3);
     sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
     sn_mesh *one = c->mesh, *two;
     int nodes = one->node_count, cells = one->cell_count;
@@ -202,7 +200,7 @@ static sn_case *with_island(void) {
     for (int n = 0; n < 8 * cells; n++)
         two->cell[n] = one->cell[n % (4 * cells)] + (n >= 4 * cells ? nodes : 0);
     snprintf(two->region_name[0], SN_NAME_MAX, "body");
-    const sn_surface *bottom = &one->surface[body_surface(c, "bottom")];
+    const sn_surface *bottom = &one->surface[surface_of(c, "bottom")];
     snprintf(two->surface[0].name, SN_NAME_MAX, "bottom");
     two->surface[0].face_count = bottom->face_count;
     two->surface[0].face = sn_alloc(3 * (size_t)bottom->face_count, sizeof(int));
@@ -235,7 +233,7 @@ static void island(void **state) {
     c->until = c->output_every = 0.02;
     body_probe(c, "stone", 0.005, 0.005, 0.025);
     r = body_run(c, NULL, &s);
-    CHECK_REL(body_last(r, "stone_uz"), -0.5 * 9.81 * 0.02 * 0.02, 1e-6);
+    CHECK_REL(last_value(r, "stone_uz"), -0.5 * 9.81 * 0.02 * 0.02, 1e-6);
     sn_record_destroy(r);
     sn_case_destroy(c);
 }
@@ -247,7 +245,7 @@ static void hinge(void **state) {
     static const double x[] = {0,    0,    0,    0.01, 0,    0,    0,    0.01, 0,    0,   0,
                                0.01, 0.01, 0.01, 0.01, 0.02, 0.01, 0.01, 0.01, 0.02, 0.02};
     static const int cell[2][8] = {{0, 1, 2, 3, 3, 4, 5, 6}, {0, 1, 2, 3, 1, 3, 4, 5}};
-    sn_tissue t = body_neo_hookean(3000, 15e3);
+    sn_tissue t = neo_hookean(3000, 15e3);
     for (int kind = 0; kind < 2; kind++) {
         sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
         sn_mesh *m;

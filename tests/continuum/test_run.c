@@ -5,7 +5,7 @@
 
 static void indent(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 2e4);
+    sn_tissue t = neo_hookean(2000, 2e4);
     double force[3];
     for (int e = 0; e < 3; e++) {
         sn_case *c = body_block(0.03, 0.03, 0.015, 6, 6, 3, &t, (sn_element)e);
@@ -29,14 +29,14 @@ static void indent(void **state) {
         for (int k = 0; k < 3; k++) {
             const char *const base[] = {"base_fx", "base_fy", "base_fz"};
             const char *const ball[] = {"ball_fx", "ball_fy", "ball_fz"};
-            size += pow(body_last(r, base[k]), 2);
-            difference += pow(body_last(r, base[k]) - body_last(r, ball[k]), 2);
+            size += pow(last_value(r, base[k]), 2);
+            difference += pow(last_value(r, base[k]) - last_value(r, ball[k]), 2);
         }
         CHECK_ABS(sqrt(difference / size), 0, 1e-7); // 1e-9 of a residual summed over many nodes
         // it pushes down, so the base pushes up; and dragged to +x it is held back by friction
         assert_true(sn_record_values(r, "ball_fz")[1] > 0);
         assert_true(fabs(sn_record_values(r, "ball_fz")[0]) == 0);
-        assert_true(body_last(r, "ball_fx") < -0.05 * body_last(r, "ball_fz"));
+        assert_true(last_value(r, "ball_fx") < -0.05 * last_value(r, "ball_fz"));
         force[e] = sn_record_values(r, "ball_fz")[1];
         if (getenv("SINEW_SHOW"))
             print_message("%s: %.4f N, %ld steps, %d iterations, %d cutbacks\n", summary.model,
@@ -90,11 +90,11 @@ static sn_status look(void *context, const sn_frame *frame) {
 
 static void frames(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 5e4);
+    sn_tissue t = neo_hookean(2000, 5e4);
     for (int e = 0; e < 3; e++) {
         sn_case *c = body_block(0.03, 0.02, 0.015, 2, 1, 1, &t, (sn_element)e);
         body_rollers(c);
-        body_pull(c, "right", 800, 0, 0, body_ramp(0, 0.7));
+        body_pull(c, "right", 800, 0, 0, make_ramp(0, 0.7));
         body_reaction(c, "wall", "left");
         c->output_every = 0.4; // 0, 0.4, 0.8 and the end
         seen s = {.c = c};
@@ -104,7 +104,7 @@ static void frames(void **state) {
         assert_int_equal(s.frames, 4);
         static const double time[] = {0, 0.4, 0.8, 1};
         for (int k = 0; k < 4; k++) CHECK_ABS(s.time[k], time[k], 1e-12);
-        CHECK_REL(body_last(r, "wall_fx"), -800 * 3e-4, 1e-8);
+        CHECK_REL(last_value(r, "wall_fx"), -800 * 3e-4, 1e-8);
         assert_true(s.pressure < -800 / 3.0); // tension; Cauchy exceeds nominal stress
         sn_record_destroy(r);
         sn_case_destroy(c);
@@ -118,7 +118,7 @@ static sn_status refuse(void *context, const sn_frame *frame) {
 
 static void refusals(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, (double)INFINITY);
+    sn_tissue t = neo_hookean(2000, (double)INFINITY);
     sn_run_summary summary;
     sn_record *r;
     CHECK_OK(sn_record_create("test", &r));
@@ -148,7 +148,7 @@ static void refusals(void **state) {
     CHECK_FAILS(sn_continuum_run(c, NULL, &summary, r), SN_E_UNSUPPORTED, "neo-hookean");
     sn_case_destroy(c);
 
-    sn_tissue light = body_neo_hookean(2000, 1e4);
+    sn_tissue light = neo_hookean(2000, 1e4);
     light.density = (double)NAN;
     c = body_block(0.03, 0.02, 0.015, 2, 1, 1, &light, SN_ELEMENT_P1);
     body_rollers(c);
@@ -164,10 +164,10 @@ static void refusals(void **state) {
 // converged before and is no error.
 static void gives_up(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 1e4);
+    sn_tissue t = neo_hookean(2000, 1e4);
     sn_case *c = body_block(0.01, 0.01, 0.01, 2, 2, 2, &t, SN_ELEMENT_P1);
     body_support(c, "bottom", true, true, true);
-    body_move(c, "top", 0, 0, -0.012, body_ramp(0, 1));
+    body_move(c, "top", 0, 0, -0.012, make_ramp(0, 1));
     c->output_every = 0.1;
     c->continuum.steps = 10;
     sn_run_summary summary;
@@ -186,9 +186,9 @@ static void gives_up(void **state) {
 
 static void schedule(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 1e4);
+    sn_tissue t = neo_hookean(2000, 1e4);
     sn_case *c = body_block(0.01, 0.01, 0.01, 1, 1, 1, &t, SN_ELEMENT_P1);
-    body_move(c, "top", 0, 0, 0.001, body_ramp(0.25, 0.5));
+    body_move(c, "top", 0, 0, 0.001, make_ramp(0.25, 0.5));
     c->output_every = 0.3;
     c->continuum.steps = 8;
     sn_fe_schedule s;

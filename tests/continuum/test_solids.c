@@ -1,8 +1,6 @@
 // Whole runs against closed forms: uniaxial tension, a thick tube, a hanging bar, orders of
 // convergence. SPDX-License-Identifier: Apache-2.0
-#include "body.h"
-#include "continuum/measure.h"
-#include "continuum/newton.h"
+#include "solve.h"
 
 // Incompressible uniaxial tension, nominal stress: mu (l - l^-2) for the neo-Hookean solid, and
 // c exp(b (I1 - 3)) (l - l^-2), I1 = l^2 + 2/l, for demiray. The state is affine, so that only
@@ -10,11 +8,11 @@
 static void uniaxial(void **state) {
     (void)state;
     for (int law = 0; law < 2; law++) {
-        sn_tissue t = law ? body_demiray(2300, 1.9, (double)INFINITY)
-                          : body_neo_hookean(1700, (double)INFINITY);
+        sn_tissue t =
+            law ? demiray(2300, 1.9, (double)INFINITY) : neo_hookean(1700, (double)INFINITY);
         sn_case *c = body_block(0.03, 0.02, 0.01, 2, 1, 1, &t, SN_ELEMENT_P2P1);
         body_rollers(c);
-        body_move(c, "right", 0.012, ANY, ANY, body_ramp(0, 2)); // stretch 1.2 at 1 s, 1.4 at 2 s
+        body_move(c, "right", 0.012, ANY, ANY, make_ramp(0, 2)); // stretch 1.2 at 1 s, 1.4 at 2 s
         body_reaction(c, "pull", "right");
         body_probe(c, "tip", 0.03, 0.02, 0.01);
         c->until = 2;
@@ -60,17 +58,17 @@ static void equibiaxial(void **state) {
         double stress = 2 * (c1 + (law ? c2 * l * l : 0)) * (l - pow(l, -5));
         sn_case *c = body_block(0.02, 0.02, 0.01, 2, 2, 1, &t, SN_ELEMENT_P2P1);
         body_rollers(c);
-        body_pull(c, "right", stress, 0, 0, body_ramp(0, 1));
-        body_pull(c, "back", 0, stress, 0, body_ramp(0, 1));
+        body_pull(c, "right", stress, 0, 0, make_ramp(0, 1));
+        body_pull(c, "back", 0, stress, 0, make_ramp(0, 1));
         body_probe(c, "corner", 0.02, 0.02, 0.01);
         body_reaction(c, "wall", "left");
         c->continuum.steps = 6;
         sn_run_summary summary;
         sn_record *r = body_run(c, NULL, &summary);
-        CHECK_REL(body_last(r, "corner_ux"), 0.02 * (l - 1), 1e-7);
-        CHECK_REL(body_last(r, "corner_uy"), 0.02 * (l - 1), 1e-7);
-        CHECK_REL(body_last(r, "corner_uz"), 0.01 * (1 / (l * l) - 1), 1e-7);
-        CHECK_REL(body_last(r, "wall_fx"), -stress * 2e-4, 1e-8);
+        CHECK_REL(last_value(r, "corner_ux"), 0.02 * (l - 1), 1e-7);
+        CHECK_REL(last_value(r, "corner_uy"), 0.02 * (l - 1), 1e-7);
+        CHECK_REL(last_value(r, "corner_uz"), 0.01 * (1 / (l * l) - 1), 1e-7);
+        CHECK_REL(last_value(r, "wall_fx"), -stress * 2e-4, 1e-8);
         double I1 = 2 * l * l + pow(l, -4), I2 = pow(l, 4) + 2 / (l * l);
         double W = c1 * (I1 - 3) + (law ? c2 * (I2 - 3) : 0);
         CHECK_REL(summary.elastic_J, W * 4e-6, 1e-6);
@@ -111,35 +109,19 @@ static void simple_shear(void **state) {
     CHECK_OK(sn_tissue_set(&t, "c2", c2));
     sn_case *c = body_block(0.02, 0.02, 0.01, 2, 2, 1, &t, SN_ELEMENT_P2P1);
     body_support(c, "boundary", true, true, true);
-    sn_fe_problem *p;
-    sn_fe_newton newton;
-    sn_fe_outcome out;
-    sn_fe_measure *m;
-    sn_record *history;
-    CHECK_OK(sn_fe_problem_create(c, 1, &p));
-    CHECK_OK(sn_fe_newton_init(&newton, p, 1e-12));
-    double *x = sn_alloc((size_t)p->space->dofs, sizeof *x);
-    sn_fe_problem_begin(p, (sn_fe_level){1, 1, 1});
-    for (int a = 0; a < p->space->nodes; a++) p->prescribed[3 * a] = g * p->space->rest[3 * a + 2];
-    CHECK_OK(sn_fe_newton_solve(&newton, true, x, &out));
-    assert_true(out.converged);
-    CHECK_OK(sn_record_create("shear", &history));
-    CHECK_OK(sn_case_history_columns(c, history));
-    CHECK_OK(sn_fe_measure_create(p, history, true, &m));
+    solve one = solve_begin(c, 1e-12);
+    for (int a = 0; a < one.p->space->nodes; a++)
+        one.p->prescribed[3 * a] = g * one.p->space->rest[3 * a + 2];
+    solve_step(&one);
     stress_seen s = {.cells = c->mesh->cell_count};
-    const sn_output output = {.context = &s, .frame = see_stress};
-    CHECK_OK(sn_fe_measure_frame(m, p, x, &output));
+    solve_frame(&one, &(sn_output){.context = &s, .frame = see_stress});
     CHECK_ABS(s.spread / (2 * c1 * g), 0, 1e-8);
     CHECK_REL(s.sigma[5], 2 * (c1 + c2) * g, 1e-8);
     CHECK_REL(s.sigma[0] - s.sigma[1], 2 * c1 * g * g, 1e-8);
     CHECK_REL(s.sigma[2] - s.sigma[1], -2 * c2 * g * g, 1e-8);
     CHECK_ABS(s.sigma[3] / c1, 0, 1e-8);
     CHECK_ABS(s.sigma[4] / c1, 0, 1e-8);
-    sn_fe_measure_destroy(m, c);
-    sn_record_destroy(history);
-    sn_free(x);
-    sn_fe_newton_free(&newton);
-    sn_fe_problem_destroy(p);
+    solve_end(&one);
     sn_case_destroy(c);
 }
 
@@ -151,7 +133,7 @@ static void tube(void **state) {
     const double Ri = 5.3e-3, Ro = 9.1e-3, mu = 17e3, ri = 1.27 * Ri;
     double a = Ri * Ri - ri * ri, ro = sqrt(Ro * Ro - a);
     double p = mu * (log(Ro / Ri) - log(ro / ri)) + mu * a / 2 * (1 / (ro * ro) - 1 / (ri * ri));
-    sn_tissue t = body_neo_hookean(mu, (double)INFINITY);
+    sn_tissue t = neo_hookean(mu, (double)INFINITY);
     sn_shape_def def = {.shape = SN_SHAPE_TUBE,
                         .inner_radius = Ri,
                         .outer_radius = Ro,
@@ -160,7 +142,7 @@ static void tube(void **state) {
     sn_case *c = body_case(&def, &t, SN_ELEMENT_P2P1);
     body_support(c, "bottom", false, false, true);
     body_support(c, "top", false, false, true);
-    body_press(c, "inner", p, body_ramp(0, 1));
+    body_press(c, "inner", p, make_ramp(0, 1));
     body_probe(c, "wall", Ri, 0, 1e-3);
     body_probe(c, "other", -Ri, 0, 1e-3);
     c->continuum.steps = 10;
@@ -168,9 +150,9 @@ static void tube(void **state) {
     sn_case_free_motions(c, summary.reason); // it may slide and spin, but nothing pushes it to
     assert_non_null(strstr(summary.reason, "rotation about z"));
     sn_record *r = body_run(c, NULL, &summary);
-    CHECK_REL(Ri + body_last(r, "wall_ux"), ri, 0.02);
-    CHECK_REL(Ri - body_last(r, "other_ux"), ri, 0.02);
-    CHECK_ABS(body_last(r, "wall_uy") / ri, 0,
+    CHECK_REL(Ri + last_value(r, "wall_ux"), ri, 0.02);
+    CHECK_REL(Ri - last_value(r, "other_ux"), ri, 0.02);
+    CHECK_ABS(last_value(r, "wall_uy") / ri, 0,
               1e-3); // no spin: the mesh is symmetric but for its cuts
     sn_record_destroy(r);
     sn_case_destroy(c);
@@ -181,7 +163,7 @@ static void tube(void **state) {
 static void hanging_bar(void **state) {
     (void)state;
     const double mu = 5e7, L = 0.1, g = 9.81;
-    sn_tissue t = body_neo_hookean(mu, mu * 2 / 3);
+    sn_tissue t = neo_hookean(mu, mu * 2 / 3);
     for (int e = SN_ELEMENT_P1; e <= SN_ELEMENT_P2P1; e++) {
         sn_case *c = body_block(0.02, 0.02, L, 1, 1, 4, &t, (sn_element)e);
         body_support(c, "top", true, true, true);
@@ -206,21 +188,21 @@ static void hanging_bar(void **state) {
 // stays and the sides come in alike.
 static void balanced_loads(void **state) {
     (void)state;
-    sn_tissue t = body_neo_hookean(2000, 5e3);
+    sn_tissue t = neo_hookean(2000, 5e3);
     sn_case *c = body_block(0.03, 0.02, 0.02, 3, 2, 2, &t, SN_ELEMENT_P1);
     body_support(c, "left", true, false, false);
-    body_pull(c, "right", 900, 0, 0, body_ramp(0, 1));
+    body_pull(c, "right", 900, 0, 0, make_ramp(0, 1));
     body_probe(c, "middle", 0.03, 0.01, 0.01);
     body_probe(c, "low", 0.03, 0, 0);
     body_probe(c, "high", 0.03, 0.02, 0.02);
     c->continuum.steps = 4;
     sn_run_summary summary;
     sn_record *r = body_run(c, NULL, &summary);
-    assert_true(body_last(r, "middle_ux") > 0.003 && body_last(r, "low_uy") > 3e-4);
-    CHECK_ABS(body_last(r, "middle_uy") / 0.02, 0, 1e-9);
-    CHECK_ABS(body_last(r, "middle_uz") / 0.02, 0, 1e-9);
-    CHECK_REL(body_last(r, "low_uy"), -body_last(r, "high_uy"), 1e-7);
-    CHECK_REL(body_last(r, "low_uz"), -body_last(r, "high_uz"), 1e-7);
+    assert_true(last_value(r, "middle_ux") > 0.003 && last_value(r, "low_uy") > 3e-4);
+    CHECK_ABS(last_value(r, "middle_uy") / 0.02, 0, 1e-9);
+    CHECK_ABS(last_value(r, "middle_uz") / 0.02, 0, 1e-9);
+    CHECK_REL(last_value(r, "low_uy"), -last_value(r, "high_uy"), 1e-7);
+    CHECK_REL(last_value(r, "low_uz"), -last_value(r, "high_uz"), 1e-7);
     sn_record_destroy(r);
     sn_case_destroy(c);
 }
@@ -237,7 +219,7 @@ static void exact(const double X[3], double u[3]) {
 }
 
 static double error_of_mesh(sn_element element, int n) {
-    sn_tissue t = body_neo_hookean(1000, 3000);
+    sn_tissue t = neo_hookean(1000, 3000);
     sn_case *c = body_block(1, 1, 1, n, n, n, &t, element);
     body_support(c, "boundary", true, true, true);
     sn_fe_problem *p;

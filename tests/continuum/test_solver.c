@@ -12,7 +12,7 @@ typedef struct linear {
 // A clamped block that is pulled: the tangent of its state x.
 static linear create(sn_element element, int n) {
     linear s;
-    sn_tissue t = body_neo_hookean(1000, 2e4);
+    sn_tissue t = neo_hookean(1000, 2e4);
     s.c = body_block(1, 1, 1, n, n, n, &t, element);
     body_support(s.c, "bottom", true, true, true);
     CHECK_OK(sn_fe_problem_create(s.c, 1, &s.p));

@@ -1,50 +1,9 @@
-// Scratch files, hostile inputs and mutations for the tests of readers.
+// Hostile inputs and mutations for the tests of readers.
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <dirent.h>
-#include <unistd.h>
-
-#include "check.h"
+#include "scratch.h"
 #include "sinew/io.h"
-
-static char scratch[256];
-
-static inline int scratch_open(void **state) {
-    (void)state;
-    snprintf(scratch, sizeof scratch, "%s/sinew-io-XXXXXX",
-             getenv("TMPDIR") ? getenv("TMPDIR") : "/tmp");
-    return mkdtemp(scratch) ? 0 : -1;
-}
-
-static inline int scratch_close(void **state) {
-    (void)state;
-    DIR *folder = opendir(scratch);
-    if (!folder) return -1;
-    for (struct dirent *entry; (entry = readdir(folder));) {
-        char path[600];
-        snprintf(path, sizeof path, "%s/%s", scratch, entry->d_name);
-        if (entry->d_name[0] != '.') remove(path); // an empty folder too
-    }
-    closedir(folder);
-    return rmdir(scratch);
-}
-
-/// Path of a scratch file; valid until the fourth call after it.
-static inline const char *scratch_path(const char *name) {
-    static char path[4][512];
-    static int next;
-    char *out = path[next++ % 4];
-    snprintf(out, sizeof path[0], "%s/%s", scratch, name);
-    return out;
-}
-
-static inline const char *scratch_write(const char *name, const char *text, size_t bytes) {
-    const char *path = scratch_path(name);
-    FILE *file = fopen(path, "wb");
-    if (!file || fwrite(text, 1, bytes, file) != bytes || fclose(file) != 0) fail_msg("%s", path);
-    return path;
-}
 
 /// A reader under test: reads a file and gives up what it read. A value that is not finite must
 /// fail the test inside.

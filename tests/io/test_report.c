@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <sys/stat.h>
 
+#include "allocator.h"
 #include "hostile.h"
 #include "markup.h"
 
@@ -13,15 +14,11 @@ static const char hostile_text[] = "</title><script>alert(1)</script> \"' onload
 static char *write_and_read(sn_report *report, const char *name) {
     const char *path = scratch_path(name);
     CHECK_OK(sn_report_write(report, path));
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    size_t bytes = (size_t)ftell(file);
-    rewind(file);
-    char *text = calloc(bytes + 1, 1);
-    assert_int_equal(fread(text, 1, bytes, file), bytes);
-    fclose(file);
-    assert_int_equal(strlen(text), bytes);
+    char *text = scratch_read(name);
+    assert_non_null(text);
+    struct stat file; // no zero in it
+    assert_int_equal(stat(path, &file), 0);
+    assert_int_equal(strlen(text), file.st_size);
     return text;
 }
 
@@ -427,18 +424,6 @@ static void test_smooth_body(void **state) {
 
 //---- memory --------------------------------------------------------------------------------------
 
-static long allocations_left;
-
-static void *scarce_resize(void *context, void *block, size_t bytes) {
-    (void)context;
-    return allocations_left-- > 0 ? realloc(block, bytes) : NULL;
-}
-
-static void scarce_release(void *context, void *block) {
-    (void)context;
-    free(block);
-}
-
 // Wherever memory ends, the report says so when it is written, and nothing is lost or touched
 // twice.
 static void test_memory(void **state) {
@@ -456,8 +441,7 @@ static void test_memory(void **state) {
     char *before = strdup(getenv("PATH"));
     setenv("PATH", scratch, 1); // without gnuplot: fast, and no less to allocate
     remove(scratch_path("gnuplot"));
-    sn_allocator scarce = {scarce_resize, scarce_release, NULL};
-    sn_set_allocator(&scarce);
+    sn_set_allocator(&counting);
     bool done = false;
     int failed = 0;
     for (long allowed = 0; !done && allowed < 1000; allowed++) {
@@ -477,6 +461,7 @@ static void test_memory(void **state) {
         assert_true(done || status == SN_E_MEMORY);
     }
     sn_set_allocator(NULL);
+    allocations_left = -1;
     setenv("PATH", before, 1);
     free(before);
     assert_true(done && failed > 5);

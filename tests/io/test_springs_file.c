@@ -29,12 +29,15 @@ static void round_trip(void **state) {
     set->exponent[0] = -1.0 / 3;
     for (int given = 0; given < 2; given++) {
         if (given) set->bulk[0] = 1e4 / 7;
+        for (int k = 0; k < SN_SPRING_SQUARES && given; k++)
+            set->square[k] = k == 6 ? 20.0 / 7 : k < 3 ? (9 - k) / 7.0 : -1.0 / 7;
         CHECK_OK(sn_springs_write(path, mesh, set, "a remark: nobody reads it"));
         CHECK_OK(sn_springs_read(path, mesh, &read));
         assert_int_equal(read->count, 3);
         assert_memory_equal(read->end, set->end, 6 * sizeof *set->end);
         assert_memory_equal(read->stiffness, set->stiffness, 3 * sizeof *set->stiffness);
         assert_true(read->exponent[0] == set->exponent[0]);
+        assert_memory_equal(read->square, set->square, SN_SPRING_SQUARES * sizeof(double));
         assert_true(given ? read->bulk[0] == set->bulk[0] : isnan(read->bulk[0]));
         sn_spring_set_destroy(read);
     }
@@ -89,6 +92,11 @@ static void bad_files(void **state) {
         {"# exponent of skin: 2\n", ":1: the mesh has no region \"skin\"", SN_E_NAME},
         {"# exponent of body: 2 kPa\n", ":1:", SN_E_UNIT},
         {"# bulk modulus of body: 2\n", ":1:", SN_E_UNIT},
+        {"# squares of body: 1 2 3\n", ":1: squares \"1 2 3\": expected 7 numbers", SN_E_SYNTAX},
+        {"# squares of body: 1 2 3 0 0 0 5 6\n", ":1: squares", SN_E_SYNTAX},
+        {"# squares of body: 1 2 3 0 0 0 a\n", ":1: squares", SN_E_SYNTAX},
+        {"# squares of skin: 1 2 3 0 0 0 5\n", ":1: the mesh has no region \"skin\"", SN_E_NAME},
+        {HEAD "# squares of body: 1 1 1 0 0 0 -9\n0,1,body,0.01,5\n", "below 0", SN_E_RANGE},
         {TABLE "0,1,body,0.01,5\n", "no exponent", SN_E_KEY},
     };
     sn_mesh *mesh = block(0.02);

@@ -5,18 +5,6 @@
 #include "hostile.h"
 #include "markup.h"
 
-static char *read_file(const char *name) {
-    FILE *file = fopen(scratch_path(name), "rb");
-    if (!file) return NULL;
-    fseek(file, 0, SEEK_END);
-    size_t bytes = (size_t)ftell(file);
-    rewind(file);
-    char *text = calloc(bytes + 1, 1);
-    assert_int_equal(fread(text, 1, bytes, file), bytes);
-    fclose(file);
-    return text;
-}
-
 // Decodes base64 by the alphabet of RFC 4648; returns the number of bytes.
 static size_t decode(const char *text, unsigned char *out) {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -81,7 +69,7 @@ static void test_frames(void **state) {
     for (int f = 0; f < 3; f++) {
         CHECK_OK(sn_vtu_frame(vtu, &(sn_frame){times[f], 3, fields}));
         // complete after every frame: f + 1 frames and no more
-        char *list = read_file("fields.pvd");
+        char *list = scratch_read("fields.pvd");
         assert_true(is_well_formed(list, true));
         int count = 0;
         for (const char *at = list; (at = strstr(at, "<DataSet")); at++) count++;
@@ -96,7 +84,7 @@ static void test_frames(void **state) {
     }
     sn_vtu_destroy(vtu);
 
-    char *text = read_file("fields_0002.vtu");
+    char *text = scratch_read("fields_0002.vtu");
     assert_non_null(text);
     assert_true(is_well_formed(text, true));
     assert_non_null(strstr(text, "header_type=\"UInt64\""));
@@ -157,7 +145,7 @@ static void test_removed(void **state) {
         CHECK_OK(sn_vtu_frame(vtu, &(sn_frame){f, 2, fields}));
         char name[32], head[64];
         snprintf(name, sizeof name, "cut_%04d.vtu", f);
-        char *text = read_file(name);
+        char *text = scratch_read(name);
         assert_true(is_well_formed(text, true));
         snprintf(head, sizeof head, "NumberOfCells=\"%zu\"", count);
         assert_non_null(strstr(text, head));
@@ -185,7 +173,7 @@ static void test_refused(void **state) {
     CHECK_OK(sn_vtu_create(scratch, "named", mesh, &vtu));
     CHECK_OK(sn_vtu_frame(vtu, &(sn_frame){0}));
     sn_vtu_destroy(vtu);
-    char *text = read_file("named_0000.vtu");
+    char *text = scratch_read("named_0000.vtu");
     assert_true(is_well_formed(text, true));
     free(text);
 
@@ -196,8 +184,8 @@ static void test_refused(void **state) {
     // a frame that failed is not counted: the next one takes its place
     CHECK_OK(sn_folder_make(folder));
     CHECK_OK(sn_vtu_frame(vtu, &(sn_frame){.time = 2}));
-    assert_null(read_file("missing/fields_0001.vtu"));
-    text = read_file("missing/fields.pvd");
+    assert_null(scratch_read("missing/fields_0001.vtu"));
+    text = scratch_read("missing/fields.pvd");
     assert_non_null(strstr(text, "timestep=\"2\" part=\"0\" file=\"fields_0000.vtu\""));
     free(text);
     remove(scratch_path("missing/fields.pvd"));

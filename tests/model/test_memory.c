@@ -1,34 +1,18 @@
 // Shortage of memory at every single request: an error, no leak, no crash.
 // SPDX-License-Identifier: Apache-2.0
+#include "allocator.h"
 #include "cases.h"
-
-static int left = -1; // requests that still succeed; negative: all
-static int live;      // blocks not yet released
-
-static void *scarce_resize(void *context, void *block, size_t bytes) {
-    (void)context;
-    if (left == 0) return NULL;
-    if (left > 0) left--;
-    live += !block;
-    return realloc(block, bytes);
-}
-
-static void scarce_release(void *context, void *block) {
-    (void)context;
-    live -= block != NULL;
-    free(block);
-}
 
 typedef sn_status try_once(const sn_case *c);
 
 // Calls with 0, 1, 2, … requests granted until it succeeds. Returns how many it needed.
 static int exhaust(try_once *call, const sn_case *c) {
     for (int granted = 0;; granted++) {
-        int before = live;
-        left = granted;
+        const long before = blocks_live;
+        allocations_left = granted;
         sn_status status = call(c);
-        left = -1;
-        assert_int_equal(live, before);
+        allocations_left = -1;
+        assert_int_equal(blocks_live, before);
         if (status == SN_OK) return granted;
         assert_int_equal(status, SN_E_MEMORY);
     }
@@ -90,8 +74,7 @@ static sn_status try_fibres(const sn_case *c) {
 
 static void shortage(void **state) {
     (void)state;
-    sn_allocator scarce = {.resize = scarce_resize, .release = scarce_release};
-    sn_set_allocator(&scarce);
+    sn_set_allocator(&counting);
     sn_case *c = block_case();
     hold(c, "left", "xyz");
     move(c, "right", 0.001, NAN, NAN)->factor = ramp(0, 1, 0.5);
@@ -120,7 +103,7 @@ static void shortage(void **state) {
     for (int k = 0; k < 6 * c->mesh->cell_count; k++) c->fibres.listed[k] = k % 7;
     assert_true(exhaust(try_copy, c) > 12);
     sn_case_destroy(c);
-    assert_int_equal(live, 0);
+    assert_int_equal(blocks_live, 0);
     sn_set_allocator(NULL);
 }
 

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "allocator.h"
 #include "driven.h"
 
 //---- loads and pushes ----------------------------------------------------------------------------
@@ -300,18 +301,6 @@ static void constants_change_at_run_time(void **state) {
 
 //---- the inside of a step ------------------------------------------------------------------------
 
-static long allocations;
-
-static void *counted_resize(void *context, void *block, size_t bytes) {
-    (void)context;
-    allocations++;
-    return realloc(block, bytes);
-}
-static void counted_release(void *context, void *block) {
-    (void)context;
-    free(block);
-}
-
 // all that a program does a thousand times a second, for 200 ms
 static void drive(const body *b, unsigned char *bytes, size_t size_of_state) {
     sn_pose pose = sn_pose_at(b->c->tool[0].at);
@@ -381,7 +370,7 @@ static void steps_call_nothing(void **state) {
 }
 
 int main(void) {
-    sn_set_allocator(&(sn_allocator){counted_resize, counted_release, NULL});
+    sn_set_allocator(&counting);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pushes_give_momentum),         cmocka_unit_test(set_loads_replace_tables),
         cmocka_unit_test(implicit_steps_obey_too),      cmocka_unit_test(views_and_torques),

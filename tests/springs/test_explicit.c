@@ -2,8 +2,7 @@
 // for all instruction sets.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/isa.h"
-#include "bodies.h"
-#include "springs/net.h"
+#include "nets.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 static const int cells[3] = {4, 2, 2};
@@ -34,16 +33,7 @@ static motion measure(const sn_net *net, const sn_state *s) {
             m.kinetic += 0.5 * mass * w * w;
         }
     }
-    sn_fields *fields;
-    CHECK_OK(sn_fields_create(net, &fields));
-    sn_fields_fill(net, fields,
-                   &(sn_moment){.precision = SN_DOUBLE,
-                                .u = s->u,
-                                .v = s->v,
-                                .store = s->store,
-                                .pressure = s->now.pressure});
-    m.elastic = sn_fields_elastic(net, fields);
-    sn_fields_destroy(fields);
+    m.elastic = elastic_energy(net, s);
     return m;
 }
 
@@ -130,36 +120,11 @@ static void bar_rings_at_its_frequency(void **state) {
     CHECK_REL(coarse / fine, 16, 0.25);
 }
 
-// The true highest frequency by many power iterations of ours, independent of the search's own.
-static double highest_frequency(const sn_net *net, const sn_case *c) {
-    const int n = c->mesh->node_count;
-    const double *inverse = net->data[SN_DOUBLE].inverse_mass;
-    sn_tangent *t;
-    CHECK_OK(sn_tangent_create(net, &t));
-    double *u = sn_alloc((size_t)n * 4, sizeof *u);
-    double *x = sn_alloc((size_t)n * 3, sizeof *x), *y = sn_alloc((size_t)n * 3, sizeof *y);
-    double *zero = sn_alloc((size_t)net->point_blocks * SN_BLOCK + 1, sizeof *zero), value = 0;
-    sn_tangent_assemble(net, t, &(sn_tangent_call){.u = u, .pressure = zero});
-    uint64_t seed = 3;
-    for (int k = 0; k < 3 * n; k++) x[k] = check_random(&seed, -1, 1);
-    for (int turn = 0; turn < 4000; turn++) {
-        double norm = 0, along = 0, own = 0;
-        sn_tangent_multiply(net, t, x, y);
-        for (int k = 0; k < 3 * n; k++) {
-            double m = inverse[4 * (k / 3) + k % 3];
-            along += x[k] * y[k];
-            own += m > 0 ? x[k] * x[k] / m : 0;
-            y[k] *= m;
-            norm += y[k] * y[k];
-        }
-        value = along / own;
-        for (int k = 0; k < 3 * n; k++) x[k] = y[k] / sqrt(norm);
-    }
+// The true highest frequency at rest.
+static double highest_frequency(const sn_net *net) {
+    double *u = sn_alloc((size_t)net->nodes * 4, sizeof *u);
+    const double value = highest_eigenvalue(net, u, 4000);
     sn_free(u);
-    sn_free(x);
-    sn_free(y);
-    sn_free(zero);
-    sn_tangent_destroy(t);
     return sqrt(value);
 }
 
@@ -195,7 +160,7 @@ static void step_is_near_the_limit(void **state) {
         add_support(c, "left", "xyz");
         sn_net *net;
         CHECK_OK(sn_net_create(c, &net));
-        double limit = 2 / highest_frequency(net, c);
+        double limit = 2 / highest_frequency(net);
         CHECK_REL(net->step, SN_STEP_SAFETY * limit,
                   0.02); // the search settles to 2e-3 in omega^2 a restart
         assert_true(after_steps(net, net->step, 3000) < 1e-4);

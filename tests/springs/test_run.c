@@ -1,5 +1,6 @@
 // What runs hand out: frames, rows, summaries, reasons; steps allocate nothing.
 // SPDX-License-Identifier: Apache-2.0
+#include "allocator.h"
 #include "bodies.h"
 #include "springs/net.h"
 
@@ -258,20 +259,6 @@ static void hopeless_runs_give_a_reason(void **state) {
 
 //---- allocation ----------------------------------------------------------------------------------
 
-static long allocations, allowed = -1; // -1: any number
-
-static void *counted_resize(void *context, void *block, size_t bytes) {
-    (void)context;
-    if (allowed == 0) return NULL;
-    if (allowed > 0) allowed--;
-    allocations++;
-    return realloc(block, bytes);
-}
-static void counted_release(void *context, void *block) {
-    (void)context;
-    free(block);
-}
-
 static void steps_of(sn_rung rung) {
     sn_tissue t = demiray(2e3, 4, 4e4);
     t.memory = prony(0.3, 0.01, 0.2, 0.2);
@@ -330,10 +317,10 @@ static void shortage_is_reported(void **state) {
             sn_run_summary s;
             sn_record *r;
             CHECK_OK(sn_record_create("run", &r));
-            allowed = n;
+            allocations_left = n;
             sn_status status = sn_springs_run(c, NULL, &s, r);
-            bool all = allowed != 0;
-            allowed = -1;
+            bool all = allocations_left != 0;
+            allocations_left = -1;
             sn_record_destroy(r);
             if (all) {
                 assert_int_equal(status, SN_OK);
@@ -374,7 +361,7 @@ static void bench_gives_rows(void **state) {
 }
 
 int main(void) {
-    sn_set_allocator(&(sn_allocator){counted_resize, counted_release, NULL});
+    sn_set_allocator(&counting);
     const struct CMUnitTest tests[] = {cmocka_unit_test(fields_of_a_uniform_stretch),
                                        cmocka_unit_test(virial_carries_the_force),
                                        cmocka_unit_test(regions_carry_one_force),

@@ -1,40 +1,22 @@
 // The files that ParaView opens, read back: every field of every element against what it must be.
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
-
-#include "check.h"
+#include "build.h"
+#include "scratch.h"
 #include "sinew/sinew.h"
 
 #define MU 2300.0
 #define BULK 9100.0
 
-static char folder[] = "/tmp/sinew-fields-XXXXXX";
-
 static sn_case *block(sn_element element, bool homogeneous) {
-    sn_case *c;
-    sn_shape_def def = {.shape = SN_SHAPE_BLOCK, .size = {0.03, 0.02, 0.01}, .cells = {3, 2, 1}};
-    CHECK_OK(sn_case_create(&c));
-    CHECK_OK(sn_mesh_build(&def, &c->mesh));
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = sn_tissue_default();
-    c->tissue[0].law = sn_law_find("neo-hookean");
-    c->tissue[0].density = 1000;
-    CHECK_OK(sn_tissue_set(c->tissue, "shear_modulus", MU));
-    CHECK_OK(sn_tissue_set(c->tissue, "bulk_modulus", BULK));
-    c->support = sn_alloc(3, sizeof *c->support);
-    static const char *const roller[] = {"left", "front", "bottom"};
-    for (int k = 0; k < 3; k++) {
-        sn_support s = {.surface = sn_mesh_surface(c->mesh, roller[k])};
-        for (int i = 0; i < 3; i++) s.fix[i] = i == k || !homogeneous;
-        if (homogeneous || k == 0) c->support[c->support_count++] = s;
-    }
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {0.009, homogeneous ? 0 : 0.002, homogeneous ? 0 : 0.004},
-                           .free = {false, homogeneous, homogeneous}};
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){0, 1}, &c->load[0].factor));
+    const sn_tissue t = neo_hookean(MU, BULK);
+    sn_case *c = make_block((const double[]){0.03, 0.02, 0.01}, (const int[]){3, 2, 1},
+                            SN_PATTERN_MIRRORED, &t);
+    add_support(c, "left", homogeneous ? "x" : "xyz");
+    if (homogeneous) add_support(c, "front", "y");
+    if (homogeneous) add_support(c, "bottom", "z");
+    const double across = homogeneous ? 0 : 0.002;
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", 0.009, across, 2 * across, 1);
+    load->free[1] = load->free[2] = homogeneous;
     c->until = c->output_every = 1;
     c->continuum.element = element;
     c->continuum.steps = 4;
@@ -51,23 +33,15 @@ static char *run(const sn_case *c) {
     sn_vtu *vtu;
     sn_record *history;
     sn_run_summary summary;
-    CHECK_OK(sn_vtu_create(folder, "fields", c->mesh, &vtu));
+    CHECK_OK(sn_vtu_create(scratch, "fields", c->mesh, &vtu));
     CHECK_OK(sn_record_create("fields", &history));
     sn_output output = {.context = vtu, .frame = write_frame};
     CHECK_OK(sn_continuum_run(c, &output, &summary, history));
     assert_true(summary.converged);
     sn_vtu_destroy(vtu);
     sn_record_destroy(history);
-    char path[64];
-    snprintf(path, sizeof path, "%s/fields_0001.vtu", folder);
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    size_t bytes = (size_t)ftell(file);
-    rewind(file);
-    char *text = calloc(bytes + 1, 1);
-    assert_int_equal(fread(text, 1, bytes, file), bytes);
-    fclose(file);
+    char *text = scratch_read("fields_0001.vtu");
+    assert_non_null(text);
     return text;
 }
 
@@ -227,24 +201,8 @@ static void all_elements(void **state) {
     }
 }
 
-static int open_folder(void **state) {
-    (void)state;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
-static int close_folder(void **state) {
-    (void)state;
-    static const char *const names[] = {"fields_0000.vtu", "fields_0001.vtu", "fields.pvd"};
-    for (int k = 0; k < 3; k++) {
-        char path[64];
-        snprintf(path, sizeof path, "%s/%s", folder, names[k]);
-        remove(path);
-    }
-    return rmdir(folder);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(linear_cells),
                                        cmocka_unit_test(all_elements)};
-    return cmocka_run_group_tests(tests, open_folder, close_folder);
+    return cmocka_run_group_tests(tests, scratch_open, scratch_close);
 }

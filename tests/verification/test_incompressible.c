@@ -1,8 +1,7 @@
 // Nearly incompressible: springs with the nodal volume term against mixed finite elements.
 // SPDX-License-Identifier: Apache-2.0
-#include "laws.h"
-
-#include "sinew/sinew.h"
+#include "build.h"
+#include "engines.h"
 
 /// What the last frame shows.
 typedef struct seen {
@@ -41,33 +40,14 @@ static sn_status look(void *context, const sn_frame *frame) {
 // length
 static sn_case *bar(void) {
     const double E = 1e4, nu = 0.4999;
-    sn_case *c;
-    CHECK_OK(sn_case_create(&c));
-    c->shape =
-        (sn_shape_def){.shape = SN_SHAPE_BLOCK, .size = {0.04, 0.01, 0.01}, .cells = {16, 4, 4}};
-    c->has_shape = true;
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = sn_tissue_default();
-    c->tissue[0].law = sn_law_find("neo-hookean");
-    CHECK_OK(sn_tissue_set(&c->tissue[0], "shear_modulus", E / (2 + 2 * nu)));
-    CHECK_OK(sn_tissue_set(&c->tissue[0], "bulk_modulus", E / (3 - 6 * nu)));
-    c->support_count = 3;
-    c->support = sn_alloc(3, sizeof *c->support);
-    c->support[0] = (sn_support){sn_mesh_surface(c->mesh, "left"), {true, true, true}};
-    c->support[1] = (sn_support){sn_mesh_surface(c->mesh, "front"), {false, true, false}};
-    c->support[2] = (sn_support){sn_mesh_surface(c->mesh, "bottom"), {false, false, true}};
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_TRACTION,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {2450, 0, 0}};
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){0, 1}, &c->load[0].factor));
-    c->probe_count = 1;
-    c->probe = sn_alloc(1, sizeof *c->probe);
-    c->probe[0] = (sn_probe){.name = "tip", .kind = SN_PROBE_POINT, .point = {0.04, 0, 0}};
-    c->until = 1;
-    c->output_every = 0.1;
+    const sn_tissue t = neo_hookean(E / (2 + 2 * nu), E / (3 - 6 * nu));
+    sn_case *c = make_block((const double[]){0.04, 0.01, 0.01}, (const int[]){16, 4, 4},
+                            SN_PATTERN_MIRRORED, &t);
+    add_support(c, "left", "xyz");
+    add_support(c, "front", "y");
+    add_support(c, "bottom", "z");
+    add_load(c, SN_LOAD_TRACTION, "right", 2450, 0, 0, 1);
+    add_probe(c, "tip", SN_PROBE_POINT, NULL, 0.04, 0, 0);
     c->springs.volume = true;
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     c->continuum.element = SN_ELEMENT_P2P1;
@@ -75,16 +55,10 @@ static sn_case *bar(void) {
     return c;
 }
 
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
-
 static double tip(engine *run, const sn_case *c, seen *s) {
-    sn_record *history;
     sn_run_summary summary = {0};
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(run(c, &(sn_output){.context = s, .frame = look}, &summary, history));
-    if (!summary.converged) print_message("%s\n", summary.reason);
-    assert_true(summary.converged);
-    double x = sn_record_values(history, "tip_ux")[history->rows - 1];
+    sn_record *history = run_engine(run, c, &(sn_output){.context = s, .frame = look}, &summary);
+    const double x = last_value(history, "tip_ux");
     sn_record_destroy(history);
     return x;
 }

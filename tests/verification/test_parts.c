@@ -2,69 +2,24 @@
 // elements and against the virtual testing machine.
 // SPDX-License-Identifier: Apache-2.0
 #include "engines.h"
+#include "parts.h"
 
 #define LENGTH 0.012
 #define SIDE 0.004
 
-static sn_history *ramp(double until) {
-    sn_history *history;
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, until}, (double[]){0, 1}, &history));
-    return history;
-}
-
-// hgo: one family along the first axis, or two at an angle to it
-static sn_tissue artery(double k1, double kappa, double angle, double bulk) {
-    static const char *const name[] = {"mu", "k1", "k2", "kappa", "angle", "bulk_modulus"};
-    const double value[] = {1300, k1, 1.6, kappa, angle, bulk};
-    sn_tissue t = sn_tissue_default();
-    t.law = sn_law_find("hgo");
-    t.density = 1000;
-    for (int k = 0; k < 6; k++) CHECK_OK(sn_tissue_set(&t, name[k], value[k]));
-    return t;
-}
-
-static void part_memories(sn_tissue *t) {
-    t->branched = true;
-    t->memory =
-        (sn_memory){.law = sn_memory_law_find("prony"), .terms = 2, .value = {0.3, 0.2, 0.25, 3}};
-    t->volumetric = (sn_memory){.law = sn_memory_law_find("kelvin"), .value = {0.4, 0.7}};
-    t->fibre = (sn_memory){.law = sn_memory_law_find("fung-spectrum"), .value = {0.2, 0.02, 30}};
-    CHECK_OK(sn_tissue_check(t));
-}
-
 // A strip held at the left (`clamped`: in all directions, else it may contract) and pulled by
 // `pull` of its length and `shear` of its side within a second. Fibres in the plane of x and y.
 static sn_case *strip(const sn_tissue *t, double turn, bool clamped, double pull, double shear) {
-    sn_case *c;
-    CHECK_OK(sn_case_create(&c));
-    c->shape =
-        (sn_shape_def){.shape = SN_SHAPE_BLOCK, .size = {LENGTH, SIDE, SIDE}, .cells = {6, 2, 2}};
-    c->has_shape = true;
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = *t;
+    sn_case *c = make_block((const double[]){LENGTH, SIDE, SIDE}, (const int[]){6, 2, 2},
+                            SN_PATTERN_MIRRORED, t);
     c->fibre[0] = cos(turn), c->fibre[1] = sin(turn);
-    c->support_count = clamped ? 1 : 3;
-    c->support = sn_alloc(3, sizeof *c->support);
-    static const char *const held[] = {"left", "front", "bottom"};
-    for (int k = 0; k < c->support_count; k++) {
-        c->support[k].surface = sn_mesh_surface(c->mesh, held[k]);
-        for (int d = 0; d < 3; d++) c->support[k].fix[d] = clamped || d == k;
-    }
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {pull * LENGTH, shear * SIDE, 0},
-                           .free = {false, !clamped, !clamped},
-                           .factor = ramp(1)};
-    c->probe_count = 1;
-    c->probe = sn_alloc(1, sizeof *c->probe);
-    c->probe[0] = (sn_probe){
-        .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
+    add_support(c, "left", clamped ? "xyz" : "x");
+    if (!clamped) add_support(c, "front", "y");
+    if (!clamped) add_support(c, "bottom", "z");
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", pull * LENGTH, shear * SIDE, 0, 1);
+    load->free[1] = load->free[2] = !clamped;
+    add_probe(c, "pull", SN_PROBE_REACTION, "right", 0, 0, 0);
     c->until = 1.5;
-    c->output_every = 0.1;
-    c->springs.precision = SN_DOUBLE;
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     c->springs.volume = false;
     c->continuum.element = SN_ELEMENT_P1;

@@ -1,30 +1,16 @@
 // How near each way of making springs of a mesh comes to converged finite elements: a block of
 // 40 x 20 x 20 mm in bending and torsion, 637 nodes, Poisson's ratio 0.45.
 // SPDX-License-Identifier: Apache-2.0
-#include "laws.h"
-
-#include "sinew/sinew.h"
+#include "build.h"
+#include "engines.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 
 static sn_case *block(int per_side) {
-    sn_case *c;
-    CHECK_OK(sn_case_create(&c));
-    c->shape = (sn_shape_def){.shape = SN_SHAPE_BLOCK,
-                              .size = {size[0], size[1], size[2]},
-                              .cells = {2 * per_side, per_side, per_side}};
-    c->has_shape = true;
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    sn_tissue *t = c->tissue;
-    *t = sn_tissue_default();
-    t->law = sn_law_find("neo-hookean");
-    CHECK_OK(sn_tissue_set(t, "shear_modulus", 1e4 / 2.9));
-    CHECK_OK(sn_tissue_set(t, "bulk_modulus", 1e4 / 0.3));
-    c->support_count = 1;
-    c->support = sn_alloc(1, sizeof *c->support);
-    c->support[0] =
-        (sn_support){.surface = sn_mesh_surface(c->mesh, "left"), .fix = {true, true, true}};
+    const sn_tissue t = neo_hookean(1e4 / 2.9, 1e4 / 0.3);
+    sn_case *c =
+        make_block(size, (const int[]){2 * per_side, per_side, per_side}, SN_PATTERN_MIRRORED, &t);
+    add_support(c, "left", "xyz");
     c->until = c->output_every = 1;
     c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
     c->springs.volume = true;
@@ -33,21 +19,10 @@ static sn_case *block(int per_side) {
     return c;
 }
 
-static sn_history *ramp(void) {
-    sn_history *history;
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, 1}, (double[]){0, 1}, &history));
-    return history;
-}
-
 // the right face goes up, free to turn and to come nearer
 static void bend(sn_case *c) {
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {0, 0, 4e-4},
-                           .free = {true, true, false},
-                           .factor = ramp()};
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", 0, 0, 4e-4, 1);
+    load->free[0] = load->free[1] = true;
 }
 
 // tractions on the right face that turn about the axis: a surface of its own for every triangle
@@ -75,11 +50,9 @@ static void twist(sn_case *c) {
         c->load[k] = (sn_load){.kind = SN_LOAD_TRACTION,
                                .surface = before + k,
                                .vector = {0, -5e3 * x[1], 5e3 * x[0]},
-                               .factor = ramp()};
+                               .factor = make_ramp(0, 1)};
     }
 }
-
-typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
 
 /// Work of the loads: of a given motion too large where the body is too stiff, of given forces too
 /// small.
@@ -87,15 +60,10 @@ static double energy(int per_side, void (*load)(sn_case *), engine *run, sn_rung
                      sn_element element) {
     sn_case *c = block(per_side);
     sn_run_summary s = {0};
-    sn_record *history;
     load(c);
     c->springs.rung = rung;
     c->continuum.element = element;
-    CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(run(c, &(sn_output){0}, &s, history));
-    if (!s.converged) print_message("%s\n", s.reason);
-    assert_true(s.converged);
-    sn_record_destroy(history);
+    sn_record_destroy(run_engine(run, c, NULL, &s));
     sn_case_destroy(c);
     return s.elastic_J;
 }

@@ -1,5 +1,6 @@
 // One tissue, one strip, three ways: the virtual testing machine, the springs, the finite elements.
 // SPDX-License-Identifier: Apache-2.0
+#include "build.h"
 #include "engines.h"
 #include "laws.h"
 
@@ -8,20 +9,10 @@
 #define RAMP 1.0
 #define STRETCH 1.2376
 
-static sn_history *ramp(void) {
-    sn_history *history;
-    CHECK_OK(sn_history_create(1, 2, (double[]){0, RAMP}, (double[]){0, 1}, &history));
-    return history;
-}
-
 // cardiac muscle as fitted (rounded), bulk over shear modulus 1000
 static sn_tissue muscle(double bulk_ratio) {
-    sn_tissue t = sn_tissue_default();
+    sn_tissue t = demiray(3100, 12.3, bulk_ratio * 3100);
     t.density = 1060;
-    t.law = sn_law_find("demiray");
-    CHECK_OK(sn_tissue_set(&t, "c", 3100));
-    CHECK_OK(sn_tissue_set(&t, "b", 12.3));
-    CHECK_OK(sn_tissue_set(&t, "bulk_modulus", bulk_ratio * 3100));
     t.memory.law = sn_memory_law_find("fung-spectrum");
     t.memory.value[0] = 0.26;
     t.memory.value[1] = 2e-3;
@@ -32,37 +23,17 @@ static sn_tissue muscle(double bulk_ratio) {
 
 // an eighth of the strip; `clamped` holds the left face in all directions
 static sn_case *strip(double bulk_ratio, bool clamped) {
-    sn_case *c;
-    CHECK_OK(sn_case_create(&c));
-    c->shape =
-        (sn_shape_def){.shape = SN_SHAPE_BLOCK, .size = {LENGTH, SIDE, SIDE}, .cells = {6, 2, 2}};
-    c->has_shape = true;
-    CHECK_OK(sn_mesh_build(&c->shape, &c->mesh));
-    c->tissue = sn_alloc(1, sizeof *c->tissue);
-    c->tissue[0] = muscle(bulk_ratio);
-    c->support_count = 3;
-    c->support = sn_alloc(3, sizeof *c->support);
-    static const char *const held[] = {"left", "front", "bottom"};
-    for (int k = 0; k < 3; k++) {
-        c->support[k].surface = sn_mesh_surface(c->mesh, held[k]);
-        c->support[k].fix[k] = true;
-    }
-    if (clamped) c->support[0].fix[1] = c->support[0].fix[2] = true;
-    c->load_count = 1;
-    c->load = sn_alloc(1, sizeof *c->load);
-    c->load[0] = (sn_load){.kind = SN_LOAD_DISPLACEMENT,
-                           .surface = sn_mesh_surface(c->mesh, "right"),
-                           .vector = {(STRETCH - 1) * LENGTH, 0, 0},
-                           .free = {false, true, true},
-                           .factor = ramp()};
-    c->probe_count = 1;
-    c->probe = sn_alloc(1, sizeof *c->probe);
-    c->probe[0] = (sn_probe){
-        .name = "pull", .kind = SN_PROBE_REACTION, .surface = sn_mesh_surface(c->mesh, "right")};
+    const sn_tissue t = muscle(bulk_ratio);
+    sn_case *c = make_block((const double[]){LENGTH, SIDE, SIDE}, (const int[]){6, 2, 2},
+                            SN_PATTERN_MIRRORED, &t);
+    add_support(c, "left", clamped ? "xyz" : "x");
+    add_support(c, "front", "y");
+    add_support(c, "bottom", "z");
+    sn_load *load = add_load(c, SN_LOAD_DISPLACEMENT, "right", (STRETCH - 1) * LENGTH, 0, 0, RAMP);
+    load->free[1] = load->free[2] = true;
+    add_probe(c, "pull", SN_PROBE_REACTION, "right", 0, 0, 0);
     c->until = 1.5;
-    c->output_every = 0.1;
     c->springs.rung = SN_RUNG_COUPLED;
-    c->springs.precision = SN_DOUBLE;
     c->continuum.element = SN_ELEMENT_P1;
     c->continuum.steps = 150; // 100 in the ramp: the recursion is second order in the step
     CHECK_OK(sn_case_check(c));

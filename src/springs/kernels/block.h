@@ -29,21 +29,33 @@ SN_INLINE void block_put(real *x, real *y, real *z, quad a, quad b, quad c, quad
 
 //---- nodes of a tile -----------------------------------------------------------------------------
 
-/// What the nodes of a tile carry, in the first cache: eight numbers each, the displacement, the
-/// pressure, the rest position and one unused.
+/// Nodes of a tile in the first cache, where displacement and rest position are needed apart: eight
+/// numbers each, the displacement, one unused, the rest position and one unused.
 typedef struct tile_nodes {
     real at[8 * SN_TILE_NODES];
 } tile_nodes;
 
-/// Reads the nodes of a tile; pressure is Nullable.
-SN_INLINE void tile_load(const sn_tile *tile, const real *u, const real *pressure,
-                         tile_nodes *nodes) {
+SN_INLINE void tile_load(const sn_tile *tile, const real *u, tile_nodes *nodes) {
     const real *position = tile->position;
     for (size_t k = 0; k < (size_t)tile->nodes; k++) {
-        quad q = quad_load(u + 4 * (size_t)tile->node[k]);
-        if (pressure) q[3] = pressure[tile->point[k]];
-        quad_store(nodes->at + 8 * k, q);
+        quad_store(nodes->at + 8 * k, quad_load(u + 4 * (size_t)tile->node[k]));
         quad_store(nodes->at + 8 * k + 4, quad_load(position + 4 * k));
+    }
+}
+
+/// Nodes of a tile in the first cache, where four numbers each will do.
+typedef struct tile_quads {
+    real at[4 * SN_TILE_NODES];
+} tile_quads;
+
+/// Displacements (or where the nodes are now, if there are rest positions) and pressures.
+SN_INLINE void tile_load_quads(const sn_tile *tile, const real *u, const real *position,
+                               const real *pressure, tile_quads *nodes) {
+    for (size_t k = 0; k < (size_t)tile->nodes; k++) {
+        quad q = quad_load(u + 4 * (size_t)tile->node[k]);
+        if (position) q += quad_load(position + 4 * k);
+        if (pressure) q[3] = pressure[tile->point[k]];
+        quad_store(nodes->at + 4 * k, q);
     }
 }
 
@@ -79,10 +91,12 @@ SN_INLINE void octo_turn(const octo r[4], octo row[4]) {
     row[3] = __builtin_shufflevector(high, high2, 2, 3, 10, 11, 6, 7, 14, 15);
 }
 
-/// Differences of what nodes carry: `spokes` others from the first of every item. Displacement,
-/// rest position (Nullable), pressure (Nullable; a row of `width` a spoke).
+// Differences of what nodes carry: `spokes` others from the first of every item. block_spokes:
+// displacement to `d`, rest position to `D`. block_quads: the first three numbers of quads to `d`,
+// the fourth to `fourth` (Nullable; a row of `width` a spoke).
+
 SN_INLINE void block_spokes(const tile_nodes *nodes, const uint16_t *corner, int spokes,
-                            block_layout at, real *d, real *D, real *pressure) {
+                            block_layout at, real *d, real *D) {
     for (int i = 0; i < at.width; i += 8) {
         octo from[8];
         for (int k = 0; k < 8; k++) from[k] = octo_load(nodes->at + 2 * (size_t)corner[i + k]);
@@ -96,20 +110,40 @@ SN_INLINE void block_spokes(const tile_nodes *nodes, const uint16_t *corner, int
                 const int row = s * at.spoke + k * at.component + i;
                 octo_store(d + row,
                            __builtin_shufflevector(one[k], two[k], 0, 1, 2, 3, 8, 9, 10, 11));
-                if (D)
-                    octo_store(D + row,
-                               __builtin_shufflevector(one[k], two[k], 4, 5, 6, 7, 12, 13, 14, 15));
+                octo_store(D + row,
+                           __builtin_shufflevector(one[k], two[k], 4, 5, 6, 7, 12, 13, 14, 15));
             }
-            if (pressure)
-                octo_store(pressure + s * at.width + i,
-                           __builtin_shufflevector(one[3], two[3], 0, 1, 2, 3, 8, 9, 10, 11));
+        }
+    }
+}
+
+// the quads of eight nodes: k and k + 4 share a register
+SN_INLINE void octo_pairs(const real *quads, const uint16_t *corner, octo pair[4]) {
+    for (int k = 0; k < 4; k++) {
+        const quad low = quad_load(quads + corner[k]), high = quad_load(quads + corner[k + 4]);
+        pair[k] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+}
+
+SN_INLINE void block_quads(const real *quads, const uint16_t *corner, int spokes, block_layout at,
+                           real *d, real *fourth) {
+    for (int i = 0; i < at.width; i += 8) {
+        octo from[4];
+        octo_pairs(quads, corner + i, from);
+        for (int s = 0; s < spokes; s++) {
+            octo r[4], row[4];
+            octo_pairs(quads, corner + (s + 1) * at.width + i, r);
+            for (int k = 0; k < 4; k++) r[k] -= from[k];
+            octo_turn(r, row);
+            for (int k = 0; k < 3; k++) octo_store(d + s * at.spoke + k * at.component + i, row[k]);
+            if (fourth) octo_store(fourth + s * at.width + i, row[3]);
         }
     }
 }
 #else
 SN_INLINE void block_spokes(const tile_nodes *nodes, const uint16_t *corner, int spokes,
-                            block_layout at, real *d, real *D, real *pressure) {
-    for (int half = 0; half < (D ? 2 : 1); half++) {
+                            block_layout at, real *d, real *D) {
+    for (int half = 0; half < 2; half++) {
         const real *from = nodes->at + 4 * half;
         for (int s = 0; s < spokes; s++)
             for (int i = 0; i < at.width; i += 4) {
@@ -120,22 +154,29 @@ SN_INLINE void block_spokes(const tile_nodes *nodes, const uint16_t *corner, int
                     r[k] = quad_load(from + 2 * (size_t)to[k]) -
                            quad_load(from + 2 * (size_t)corner[i + k]);
                 block_put(row, row + at.component, row + 2 * at.component, r[0], r[1], r[2], r[3]);
-                if (pressure && !half)
-                    quad_store(pressure + s * at.width + i,
-                               (quad){r[0][3], r[1][3], r[2][3], r[3][3]});
             }
     }
 }
+
+SN_INLINE void block_quads(const real *quads, const uint16_t *corner, int spokes, block_layout at,
+                           real *d, real *fourth) {
+    for (int s = 0; s < spokes; s++)
+        for (int i = 0; i < at.width; i += 4) {
+            const uint16_t *to = corner + (s + 1) * at.width + i;
+            real *row = d + s * at.spoke + i;
+            quad r[4];
+            for (int k = 0; k < 4; k++)
+                r[k] = quad_load(quads + to[k]) - quad_load(quads + corner[i + k]);
+            block_put(row, row + at.component, row + 2 * at.component, r[0], r[1], r[2], r[3]);
+            if (fourth)
+                quad_store(fourth + s * at.width + i, (quad){r[0][3], r[1][3], r[2][3], r[3][3]});
+        }
+}
 #endif
 
-/// Pressure of `width` nodes.
-SN_INLINE void block_pressure(const tile_nodes *nodes, const uint16_t *corner, int width,
-                              real *pressure) {
-    const real *from = nodes->at + 3;
-    for (int i = 0; i < width; i += 4)
-        quad_store(pressure + i,
-                   (quad){from[2 * (size_t)corner[i]], from[2 * (size_t)corner[i + 1]],
-                          from[2 * (size_t)corner[i + 2]], from[2 * (size_t)corner[i + 3]]});
+/// The fourth number of the quads of `width` nodes.
+SN_INLINE void block_fourth(const real *quads, const uint16_t *corner, int width, real *fourth) {
+    for (int i = 0; i < width; i++) fourth[i] = quads[corner[i] + 3];
 }
 
 /// Four numbers each of x, y, z and w become quads.

@@ -19,10 +19,10 @@ SN_INLINE void find_forces(const sn_cell_pass *pass, size_t at, cell_block *c) {
 }
 
 void SN_KERNEL(sn_cells)(const sn_cell_pass *pass, const sn_tile *tile) {
-    tile_nodes nodes;
+    tile_quads nodes;
     cell_block c;
     const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
-    tile_load(tile, pass->u, nodal ? pass->pressure : NULL, &nodes);
+    tile_load_quads(tile, pass->u, NULL, nodal ? pass->pressure : NULL, &nodes);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
     for (int b = 0; b < tile->blocks; b++) {
         const int block = tile->block + b;

@@ -28,10 +28,10 @@ SN_INLINE void load9(const real *from, int i, wide x[9]) {
 }
 
 // mean of the pressure of the corners; difference: of corners 1 2 3 from corner 0
-SN_INLINE void mean_pressure(const tile_nodes *nodes, const uint16_t *corner,
+SN_INLINE void mean_pressure(const tile_quads *nodes, const uint16_t *corner,
                              const real *difference, real *p) {
     const real quarter = (real)0.25;
-    block_pressure(nodes, corner, SN_BLOCK, p);
+    block_fourth(nodes->at, corner, SN_BLOCK, p);
     for (int i = 0; i < SN_BLOCK; i += SN_LANES)
         wide_store(p + i, wide_load(p + i) + quarter * (wide_load(difference + i) +
                                                         wide_load(difference + SN_BLOCK + i) +
@@ -39,15 +39,11 @@ SN_INLINE void mean_pressure(const tile_nodes *nodes, const uint16_t *corner,
 }
 
 // H = sum over corners 1 2 3 of (u_a - u_0) g_a; nodal: p too
-SN_INLINE void displacement_gradient(const sn_cell_pass *pass, const tile_nodes *nodes,
+SN_INLINE void displacement_gradient(const sn_cell_pass *pass, const tile_quads *nodes,
                                      const uint16_t *corner, size_t at, bool nodal, cell_block *c) {
     const real *gradient = (const real *)pass->gradient + 9 * at;
-    if (nodal) {
-        block_spokes(nodes, corner, 3, layout, c->H, NULL, c->f);
-        mean_pressure(nodes, corner, c->f, c->T + 6 * SN_BLOCK);
-    } else {
-        block_spokes(nodes, corner, 3, layout, c->H, NULL, NULL);
-    }
+    block_quads(nodes->at, corner, 3, layout, c->H, nodal ? c->f : NULL);
+    if (nodal) mean_pressure(nodes, corner, c->f, c->T + 6 * SN_BLOCK);
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide d[9], g[9];
         load9(c->H, i, d);

@@ -16,7 +16,9 @@ void SN_KERNEL(sn_press)(const sn_cell_pass *pass, const sn_tile *tile);
 enum { WIDTH = SN_FAN_BLOCK, MEMBERS = SN_FAN_RING + 1 };
 
 typedef struct fan_block {
-    real d[3 * MEMBERS * WIDTH]; // of q, then of the ring
+    // of q, then of the ring, seen from p: displacement (where forces are found: place), and at
+    // rest
+    real d[3 * MEMBERS * WIDTH];
     real A[3 * MEMBERS * WIDTH];
     real p[(MEMBERS + 1) * WIDTH];     // pressure of p, then what others have more
     real f[3 * (MEMBERS + 1) * WIDTH]; // of p, q, then the ring: growth or force
@@ -107,7 +109,7 @@ SN_INLINE void grow_blocks(const sn_tile *tile, const tile_nodes *nodes, int rin
     const int corners = 2 + ring;
     for (int b = 0; b < tile->blocks; b++) {
         const uint16_t *corner = tile->corner + b * corners * WIDTH;
-        block_spokes(nodes, corner, corners - 1, layout, c.d, c.A, NULL);
+        block_spokes(nodes, corner, corners - 1, layout, c.d, c.A);
         const real *present =
             tile->present ? (const real *)tile->present + b * corners * WIDTH : NULL;
         for (int i = 0; i < WIDTH; i += SN_LANES) grow(&c, present, ring, closed, i);
@@ -119,7 +121,7 @@ SN_INLINE void grow_blocks(const sn_tile *tile, const tile_nodes *nodes, int rin
 void SN_KERNEL(sn_volumes)(const sn_cell_pass *pass, const sn_tile *tile) {
     tile_nodes nodes;
     real sum[4 * SN_TILE_NODES]; // one of four is used: places are multiples of four
-    tile_load(tile, pass->u, NULL, &nodes);
+    tile_load(tile, pass->u, &nodes);
     for (int k = 0; k < tile->nodes; k++) sum[4 * k] = 0;
     grow_blocks(tile, &nodes, tile->ring, tile->closed, sum);
     real *growth = tile->growth;
@@ -141,10 +143,7 @@ typedef struct pressed_node {
 } pressed_node;
 
 SN_INLINE void pressed_load(const fan_block *c, int k, int i, const wide e[3], pressed_node *r) {
-    wide A[3];
     load3(c->d + 3 * (k + 1) * WIDTH, i, r->a);
-    load3(c->A + 3 * (k + 1) * WIDTH, i, A);
-    for (int j = 0; j < 3; j++) r->a[j] = A[j] + r->a[j];
     cross(e, r->a, r->t);
 }
 
@@ -180,14 +179,10 @@ SN_INLINE void store3(real *to, int i, const wide x[3]) {
 
 // forces on the members of the fans of one group of lanes
 SN_INLINE void push(fan_block *c, const real *present, int ring, bool closed, real modulus, int i) {
-    wide e[3], A[3], q[3], sum[3], carry[3], first[3], on_one[3], on_two[3];
+    wide e[3], q[3], sum[3], carry[3], first[3], on_one[3], on_two[3];
     pressed_node one, two, start;
     load3(c->d, i, e);
-    load3(c->A, i, A);
-    for (int j = 0; j < 3; j++) {
-        e[j] = e[j] + A[j];
-        q[j] = sum[j] = carry[j] = first[j] = wide_set(0);
-    }
+    for (int j = 0; j < 3; j++) q[j] = sum[j] = carry[j] = first[j] = wide_set(0);
     pressed_load(c, 0, i, e, &start);
     one = start;
     for (int k = 0; k + 1 < ring; k++) {
@@ -222,14 +217,15 @@ SN_INLINE void push(fan_block *c, const real *present, int ring, bool closed, re
     store3(c->f, i, sum);
 }
 
-SN_INLINE void push_blocks(const sn_tile *tile, const tile_nodes *nodes, int ring, bool closed,
+SN_INLINE void push_blocks(const sn_tile *tile, const real *now, int ring, bool closed,
                            real modulus) {
     fan_block c;
     const int corners = 2 + ring;
     for (int b = 0; b < tile->blocks; b++) {
         const uint16_t *corner = tile->corner + b * corners * WIDTH;
-        block_pressure(nodes, corner, WIDTH, c.p);
-        block_spokes(nodes, corner, corners - 1, layout, c.d, c.A, c.p + WIDTH);
+        block_fourth(now, corner, WIDTH, c.p);
+        block_quads(now, corner, corners - 1, layout, c.d, c.p + WIDTH);
+        if (modulus > 0) block_quads(tile->position, corner, corners - 1, layout, c.A, NULL);
         const real *present =
             tile->present ? (const real *)tile->present + b * corners * WIDTH : NULL;
         for (int i = 0; i < WIDTH; i += SN_LANES) push(&c, present, ring, closed, modulus, i);
@@ -244,8 +240,8 @@ SN_INLINE void push_blocks(const sn_tile *tile, const tile_nodes *nodes, int rin
 }
 
 void SN_KERNEL(sn_press)(const sn_cell_pass *pass, const sn_tile *tile) {
-    tile_nodes nodes;
-    tile_load(tile, pass->u, pass->pressure, &nodes);
+    tile_quads now;
+    tile_load_quads(tile, pass->u, tile->position, pass->pressure, &now);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
-    push_blocks(tile, &nodes, tile->ring, tile->closed, (real)pass->upright);
+    push_blocks(tile, now.at, tile->ring, tile->closed, (real)pass->upright);
 }

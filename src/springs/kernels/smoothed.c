@@ -23,9 +23,9 @@ enum { ITEM = 12 };
 
 void SN_KERNEL(sn_shapes)(const sn_cell_pass *pass, const sn_tile *tile) {
     const real sixth = (real)(1.0 / 6.0);
-    tile_nodes nodes;
+    tile_quads nodes;
     cell_block c;
-    tile_load(tile, pass->u, NULL, &nodes);
+    tile_load_quads(tile, pass->u, NULL, NULL, &nodes);
     for (int b = 0; b < tile->blocks; b++) {
         const size_t at = (size_t)(tile->block + b) * SN_BLOCK;
         const real *volume = (const real *)pass->volume + at;
@@ -132,10 +132,10 @@ SN_INLINE void gather_piola(const sn_cell_pass *pass, size_t at, real *P) {
 void SN_KERNEL(sn_shares)(const sn_cell_pass *pass, const sn_tile *tile) {
     const bool nodal = pass->volume_mode == SN_VOLUME_NODE;
     const real sixth = (real)(1.0 / 6.0);
-    tile_nodes nodes;
+    tile_quads nodes;
     cell_block c;
     real sum[9 * SN_BLOCK];
-    if (nodal) tile_load(tile, pass->u, pass->pressure, &nodes);
+    if (nodal) tile_load_quads(tile, pass->u, NULL, pass->pressure, &nodes);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
     for (int b = 0; b < tile->blocks; b++) {
         const size_t at = (size_t)(tile->block + b) * SN_BLOCK;

@@ -8,7 +8,8 @@
 // rest length, with slope 1 at rest:
 //     t = (exp(B x) - 1) / B                 in tension
 //     t = (lambda - 1/lambda^2) / 3          in compression: no spring collapses
-// and the force on end 0 is k t_visc / lambda (D + d).
+// Calibrated springs have x (exp(C x^2) - 1) more, C = D.C D / L^2 in tension and one number in
+// compression. The force on end 0 is k t_visc / lambda (D + d).
 #include "springs/kernels/block.h"
 
 void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile);
@@ -22,11 +23,10 @@ typedef struct spring_block {
     real over[SN_BLOCK]; // 1 / lambda
 } spring_block;
 
-SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
-    const real B = (real)pass->exponent, third = (real)(1.0 / 3.0);
-    const bool curved = fabs(pass->exponent) > 1e-20;
-    const real over_B = (real)(curved ? 1.0 / pass->exponent : 0.0);
+// x = lambda - 1 and 1 / lambda of the springs of a block; returns the largest x
+SN_INLINE real stretch(spring_block *s) {
     const real least = (real)1e-6; // of lambda^2: a spring turned to a point stays finite
+    wide most = wide_set(0);
     for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
         wide dx = wide_load(s->d + i), dy = wide_load(s->d + SN_BLOCK + i);
         wide dz = wide_load(s->d + 2 * SN_BLOCK + i);
@@ -37,13 +37,56 @@ SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
         e = wide_max(e, wide_set(least - 1));
         wide lambda = wide_sqrt(1 + e);
         wide one = 1 + lambda, inverse = 1 / (lambda * one); // of both divisions
-        wide over = one * inverse, x = e * lambda * inverse;
-        wide stretched = wide_max(x, wide_set(0));
-        wide pull = curved ? wide_expm1(B * stretched) * over_B : stretched;
-        wide push = x * (1 + x * (1 + third * x)) * (over * over);
-        wide_store(s->t + i, wide_select(wide_less(x, wide_set(0)), push, pull));
-        wide_store(s->over + i, over);
+        wide x = e * lambda * inverse;
+        most = wide_max(x, most);
+        wide_store(s->t + i, x);
+        wide_store(s->over + i, one * inverse);
     }
+    real lane[SN_LANES], largest = 0;
+    wide_store(lane, most);
+    for (int k = 0; k < SN_LANES; k++) largest = lane[k] > largest ? lane[k] : largest;
+    return largest;
+}
+
+// what calibrated springs have more: C and c of the law
+SN_INLINE wide square_part(const double *square, const spring_block *s, int i, wide x) {
+    wide Dx = wide_load(s->D + i), Dy = wide_load(s->D + SN_BLOCK + i);
+    wide Dz = wide_load(s->D + 2 * SN_BLOCK + i);
+    real q[SN_SPRING_SQUARES];
+    for (int k = 0; k < SN_SPRING_SQUARES; k++) q[k] = (real)square[k];
+    wide C = q[0] * Dx * Dx + q[1] * Dy * Dy + q[2] * Dz * Dz +
+             2 * (q[3] * Dx * Dy + q[4] * Dy * Dz + q[5] * Dz * Dx);
+    C = wide_select(wide_less(x, wide_set(0)), wide_set(q[6]), C / (Dx * Dx + Dy * Dy + Dz * Dz));
+    return x * wide_expm1(wide_min(C * x * x, wide_set((real)SN_SPRING_STEEPEST)));
+}
+
+/// How (exp(B x) - 1) / B is found in a block: the bits are the same wherever two ways would do.
+typedef enum spring_curve { CURVE_NONE, CURVE_NEAR, CURVE_FAR } spring_curve;
+
+SN_INLINE void pull_or_push(real B, real over_B, spring_curve curve, const double *square,
+                            spring_block *s) {
+    const real third = (real)(1.0 / 3.0);
+    for (int i = 0; i < SN_BLOCK; i += SN_LANES) {
+        wide x = wide_load(s->t + i), over = wide_load(s->over + i);
+        wide stretched = wide_max(x, wide_set(0)), y = B * stretched;
+        wide pull = curve == CURVE_NONE   ? stretched
+                    : curve == CURVE_NEAR ? wide_expm1_near(y) * over_B
+                                          : wide_expm1(y) * over_B;
+        wide push = x * (1 + x * (1 + third * x)) * (over * over);
+        wide t = wide_select(wide_less(x, wide_set(0)), push, pull);
+        if (square) t = t + square_part(square, s, i, x);
+        wide_store(s->t + i, t);
+    }
+}
+
+SN_INLINE void tension(const sn_spring_pass *pass, spring_block *s) {
+    const real B = (real)pass->exponent, most = (real)fabs(pass->exponent) * stretch(s);
+    if (!(fabs(pass->exponent) > 1e-20))
+        pull_or_push(B, 0, CURVE_NONE, pass->square, s);
+    else if (most < (real)SN_EXPM1_NEAR)
+        pull_or_push(B, (real)(1.0 / pass->exponent), CURVE_NEAR, pass->square, s);
+    else
+        pull_or_push(B, (real)(1.0 / pass->exponent), CURVE_FAR, pass->square, s);
 }
 
 SN_INLINE void take(const real *rows, const uint16_t *corner, bool away, real *force) {
@@ -81,7 +124,7 @@ void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile) {
     const block_layout layout = {.width = STARS, .component = SN_BLOCK, .spoke = STARS};
     tile_nodes nodes;
     spring_block s;
-    tile_load(tile, pass->u, NULL, &nodes);
+    tile_load(tile, pass->u, &nodes);
     memset(tile->force, 0, (size_t)tile->nodes * sizeof(quad));
     for (int b = 0; b < tile->blocks; b++) {
         const uint16_t *corner = tile->corner + (1 + SN_STAR) * STARS * b;
@@ -91,7 +134,7 @@ void SN_KERNEL(sn_springs)(const sn_spring_pass *pass, const sn_tile *tile) {
             block_ask((const real *)pass->stiffness + (size_t)(block + 1) * SN_BLOCK,
                       SN_BLOCK * sizeof(real));
         }
-        block_spokes(&nodes, corner, SN_STAR, layout, s.d, s.D, NULL);
+        block_spokes(&nodes, corner, SN_STAR, layout, s.d, s.D);
         tension(pass, &s);
         block_memory(&pass->memory, block - pass->first, SN_BLOCK, s.t);
         pull((const real *)pass->stiffness + (size_t)block * SN_BLOCK, corner, &s, tile->force);

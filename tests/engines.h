@@ -2,22 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <math.h>
-
 #include "check.h"
 #include "sinew/sinew.h"
 
+/// sn_springs_run() or sn_continuum_run().
 typedef sn_status engine(const sn_case *, const sn_output *, sn_run_summary *, sn_record *);
 
-/// Runs a case to its end; the history is the caller's.
-static inline sn_record *reaction(engine *run, const sn_case *c) {
+/// Runs a case, which must end well; the history is the caller's.
+static inline sn_record *run_engine(engine *run, const sn_case *c, const sn_output *output,
+                                    sn_run_summary *summary) {
     sn_record *history;
-    sn_run_summary summary = {0};
     CHECK_OK(sn_record_create("run", &history));
-    CHECK_OK(run(c, &(sn_output){0}, &summary, history));
-    if (!summary.converged) print_message("%s\n", summary.reason);
-    assert_true(summary.converged);
+    CHECK_OK(run(c, output, summary, history));
+    if (!summary->converged) print_message("%s\n", summary->reason);
+    assert_true(summary->converged);
     return history;
+}
+
+static inline sn_record *reaction(engine *run, const sn_case *c) {
+    sn_run_summary summary = {0};
+    return run_engine(run, c, &(sn_output){0}, &summary);
 }
 
 /// Largest difference of the probes "pull" over the largest of b.
