@@ -14,7 +14,6 @@
 
 #include "springs/bench.h"
 #include "springs/bench_plain.h"
-#include "springs/net.h"
 
 static const double young = 1e4, density = 1000, poisson = 0.45, edge = 0.1; // SI
 static const double least_time = 0.15;                                       // seconds of a sample

@@ -16,7 +16,7 @@
 #include <time.h>
 
 #include "springs/bench.h"
-#include "springs/net.h"
+#include "springs/state.h"
 
 static const double frame = 1e-3, radius = 0.015, deep = 0.012, edge = 0.1; // SI
 static const double turn = 6.283185307179586;

@@ -5,6 +5,7 @@
 // Source: the formulas of springs/kernels, without blocks, tiles, stars, fans and lanes. Items and
 // nodes stand along the curve of springs/order.c, which a first version would not have either.
 #include "springs/bench_plain.h"
+#include "springs/forces.h"
 
 #include <math.h>
 #include <string.h>

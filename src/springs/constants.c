@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/steps.h"
 
 void sn_net_springs(const sn_net *net, int *ends, double *stiffness) {
     const double *k = net->data[SN_DOUBLE].stiffness;

@@ -25,6 +25,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "springs/run.h"
+#include "springs/steps.h"
 #include "springs/vectors.h"
 
 static const double same_time = 1e-9; // of the whole time: two times that are one

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "springs/net.h"
+#include "springs/parts.h"
 
 /// A load on faces, and the cells behind them.
 typedef struct sn_cutting_load {

@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 /// The pieces of a body, and sums over each: one piece where nothing was cut.
 typedef struct piece_sums {

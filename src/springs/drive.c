@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/state.h"
 
 //---- building ------------------------------------------------------------------------------------
 

@@ -14,7 +14,9 @@
 // would be where they are soft. A viscous part stores nothing.
 #include <math.h>
 
-#include "springs/net.h"
+#include "springs/forces.h"
+#include "springs/moment.h"
+#include "springs/parts.h"
 
 //---- springs -------------------------------------------------------------------------------------
 

@@ -4,7 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/run.h"
+#include "springs/steps.h"
 
 /// What the ledger keeps from one step to the next.
 typedef struct ledger {

@@ -11,7 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/forces.h"
+#include "springs/moment.h"
+#include "springs/parts.h"
 
 /// Energy of the instantaneous law, W + U: all of it, summed as it comes, and its parts.
 typedef struct energies {

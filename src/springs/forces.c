@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/forces.h"
+#include "springs/parts.h"
 
 static size_t real_size(sn_precision p) {
     return p == SN_SINGLE ? sizeof(float) : sizeof(double);

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/steps.h"
 #include "springs/vectors.h"
 
 static void evaluate(const sn_net *net, const sn_frequency_call *call, const void *u, bool bare) {

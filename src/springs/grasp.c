@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/state.h"
 
 static const double same_time = 1e-9; // of the whole time: two times that are one
 

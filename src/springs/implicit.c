@@ -23,7 +23,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 #include "springs/vectors.h"
 
 enum { NEWTON_MOST = 25, HALVINGS = 8, FEW_CORNERS = 8 };

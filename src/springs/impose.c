@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/state.h"
 
 static bool finite3(const double x[3]) {
     return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);

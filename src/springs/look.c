@@ -24,7 +24,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 enum { CHECK_FIRST = 64, CHECK_LEAST = 8, CHECK_MOST = 512 };        // steps from look to look
 enum { SPREAD_LEAST = 8, SPREAD_MOST = 64 };                         // steps of a look

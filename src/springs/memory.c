@@ -8,7 +8,8 @@
 // exponentials may differ from part to part.
 #include <math.h>
 
-#include "springs/net.h"
+#include "springs/forces.h"
+#include "springs/moment.h"
 
 void sn_region_stores(const sn_net *net, const sn_net_region *g, sn_net_store store[SN_STORES]) {
     const bool own_volume = net->volume_mode == SN_VOLUME_CELL, branched = g->tissue.branched;

@@ -5,7 +5,8 @@
 #include <string.h>
 
 #include "base/isa.h"
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 static sn_status check_settings(const sn_case *c) {
     const sn_springs_def *def = &c->springs;

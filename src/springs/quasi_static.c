@@ -14,7 +14,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/run.h"
+#include "springs/steps.h"
 
 enum { NEWTON_MOST = 40, HALVINGS = 10, RAMP_STEPS = 20, FEW_CORNERS = 8, CUTS_MOST = 24 };
 static const double least_step = 1e-8; // of the whole time

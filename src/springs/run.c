@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/run.h"
 
 static const double progress_every = 0.25; // seconds of wall time
 

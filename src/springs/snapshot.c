@@ -8,7 +8,9 @@
 // frequency search) is left out.
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/run.h"
+#include "springs/steps.h"
 
 #define SNAPSHOT_VERSION 3u
 #define SNAPSHOT_ORDER 0x01020304u

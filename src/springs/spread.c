@@ -13,7 +13,7 @@
 // search.
 #include <math.h>
 
-#include "springs/net.h"
+#include "springs/steps.h"
 #include "springs/vectors.h"
 
 enum { PATCH = 32, SIZE = 3 * PATCH }; // nodes, numbers

@@ -15,7 +15,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 static const double lost_way = 1e3;  // of an edge in one step: nothing comes back from there
 static const double wild_way = 0.02; // of an edge in one step: a fiftieth of the speed of waves

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/sort.h"
+#include "springs/parts.h"
 #include "springs/tangent.h"
 #include "springs/vectors.h"
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "springs/net.h"
+#include "springs/forces.h"
 
 /// A sparse matrix of blocks by rows; columns rise within a row.
 typedef struct sn_sparsity {

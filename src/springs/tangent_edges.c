@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/sort.h"
+#include "springs/parts.h"
 #include "springs/tangent.h"
 
 /// Deformation of the cluster of one edge, and scratch for its stiffness.

@@ -15,7 +15,8 @@
 // longer by a fifth (SN_TOUCH_GROWTH; 1.236 is the limit where k is infinite).
 #include <math.h>
 
-#include "springs/net.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 double sn_state_touch_step(const sn_net *net, const sn_state *s) {
     if (s->last_step > 0) return s->last_step;

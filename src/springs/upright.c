@@ -9,7 +9,9 @@
 #include <math.h>
 
 #include "base/vector.h"
-#include "springs/net.h"
+#include "springs/moment.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 static const double fallen = -0.5;    // growth J - 1 of a volume point
 static const double near_depth = 0.3; // above SN_UPRIGHT, of cells that may be crushed soon

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "bodies.h"
-#include "springs/net.h"
+#include "springs/state.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 static const int cells[3] = {4, 2, 2};

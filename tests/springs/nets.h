@@ -3,7 +3,8 @@
 #pragma once
 
 #include "bodies.h"
-#include "springs/net.h"
+#include "springs/moment.h"
+#include "springs/state.h"
 
 static inline int node_at(const sn_net *net, double x, double y, double z) {
     for (int i = 0; i < net->nodes; i++) {

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/isa.h"
 #include "parted.h"
+#include "springs/state.h"
 
 static const double size[3] = {0.03, 0.02, 0.02};
 static const int cells[3] = {3, 2, 2};

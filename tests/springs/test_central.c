@@ -1,7 +1,8 @@
 // Central springs: constants of the lattices, the spring's law and memory.
 // SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
-#include "springs/net.h"
+#include "springs/moment.h"
+#include "springs/steps.h"
 
 // Cauchy-Born tensor of all springs of a net that lie between low and high, each counted by the
 // part of its length inside: a period of the lattice. Over the volume of the box and mu.

@@ -1,6 +1,7 @@
 // Motion that must stay what it is: turned and thrown bodies, energies over long runs, the ledger.
 // SPDX-License-Identifier: Apache-2.0
 #include "nets.h"
+#include "springs/steps.h"
 
 // Turned by half a radian at once: no force, with memory and damping by stiffness, on both rungs.
 static void rotation_gives_no_force(void **state) {

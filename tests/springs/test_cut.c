@@ -1,6 +1,9 @@
 // Cuts: what is left is the body without the cells.
 // SPDX-License-Identifier: Apache-2.0
 #include "cuts.h"
+#include "springs/moment.h"
+#include "springs/parts.h"
+#include "springs/state.h"
 
 //---- forces --------------------------------------------------------------------------------------
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cuts.h"
 #include "parted.h"
+#include "springs/parts.h"
+#include "springs/steps.h"
 
 enum { SORTS = 4 }; // of tissue
 

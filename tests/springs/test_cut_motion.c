@@ -1,6 +1,8 @@
 // Cuts in a body that moves: energy and momentum, pieces that fly, dust.
 // SPDX-License-Identifier: Apache-2.0
 #include "cuts.h"
+#include "springs/parts.h"
+#include "springs/state.h"
 
 //---- energy --------------------------------------------------------------------------------------
 

@@ -1,6 +1,7 @@
 // Cut states: threads, bytes, other nets.
 // SPDX-License-Identifier: Apache-2.0
 #include "cuts.h"
+#include "springs/state.h"
 
 // The same with two threads as with one; bytes saved right after a cut bring the state back.
 static void cuts_keep_bits(void **state) {

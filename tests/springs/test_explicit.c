@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/isa.h"
 #include "nets.h"
+#include "springs/steps.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 static const int cells[3] = {4, 2, 2};

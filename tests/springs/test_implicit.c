@@ -2,6 +2,7 @@
 // allocates. SPDX-License-Identifier: Apache-2.0
 #include "allocator.h"
 #include "nets.h"
+#include "springs/steps.h"
 
 static sn_case *poked(const sn_tissue *t, sn_rung rung) {
     sn_case *c = make_block((const double[]){0.04, 0.04, 0.02}, (const int[]){4, 4, 2},

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
 #include "springs/bench.h"
-#include "springs/net.h"
+#include "springs/steps.h"
 
 static const double size[3] = {0.03, 0.03, 0.03};
 static const int cells[3] = {3, 3, 3};

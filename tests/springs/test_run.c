@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "allocator.h"
 #include "bodies.h"
-#include "springs/net.h"
+#include "springs/moment.h"
+#include "springs/state.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
 static const int cells[3] = {4, 2, 2};

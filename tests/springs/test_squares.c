@@ -1,7 +1,6 @@
 // The law that calibrated springs have, and the net that it acts in.
 // SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
-#include "springs/net.h"
 #include "springs/tangent.h"
 
 static const sn_spring_law laws[] = {{5, 0, 0},   {5, 0, 20},      {-3, 9, 22}, {-3, 0.4, 0.2},

@@ -3,7 +3,7 @@
 #include <stdatomic.h>
 
 #include "bodies.h"
-#include "springs/net.h"
+#include "springs/state.h"
 
 static const double size[3] = {0.04, 0.03, 0.03};
 static const int cells[3] = {10, 8, 8}; // several tiles of every kind

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bodies.h"
 #include "listed.h"
-#include "springs/net.h"
+#include "springs/forces.h"
 
 static const double size[3] = {0.03, 0.02, 0.025};
 static const int cells[3] = {3, 2, 2};
