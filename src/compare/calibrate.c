@@ -175,18 +175,6 @@ static sn_status baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_
     return status;
 }
 
-sn_status sn_calibration_baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_set **set) {
-    sn_case *own;
-    *set = NULL;
-    SN_TRY(sn_calibration_case(c, &own));
-    sn_status status = baseline(own, rule, set);
-    sn_case_destroy(own);
-    if (status == SN_OK) return SN_OK;
-    sn_spring_set_destroy(*set);
-    *set = NULL;
-    return status;
-}
-
 //---- the full rule -------------------------------------------------------------------------------
 
 static const double most_left = 0.05; // of a tensor that the edges of a lattice do not give: then
@@ -268,11 +256,27 @@ static sn_status full_constants(bool exact, sn_calibration_body *body,
 typedef struct job {
     const sn_case *own;
     sn_calibration_rule rule;
-    bool exact; // the net's own springs have an isotropic tensor
+    bool tested; // else nothing is found out but the springs
+    bool exact;  // the net's own springs have an isotropic tensor
     double strain, share[SN_CALIBRATION_KINDS];
     sn_spring_set *rule_set; // of the rule; of the net itself for the full one
     sn_spring_set *set;      // result of the full rule
 } job;
+
+// What of the law of springs the rule fits. The net's own rule, which baselines have their exponent
+// from, refuses tissues with directions.
+static sn_calibration_finite_fit fit_of(const job *j, int r) {
+    if (j->rule == SN_CALIBRATION_FULL) return SN_CALIBRATION_FIT_LAW;
+    return sn_calibration_oriented(&j->own->tissue[r]) ? SN_CALIBRATION_FIT_EXPONENT
+                                                       : SN_CALIBRATION_FIT_NOTHING;
+}
+
+static bool has_work(const job *j) {
+    bool any = j->tested;
+    for (int r = 0; r < j->own->mesh->region_count; r++)
+        any = any || fit_of(j, r) != SN_CALIBRATION_FIT_NOTHING;
+    return any;
+}
 
 static sn_status do_region(job *j, int r, sn_calibration_region *region) {
     const sn_mesh *mesh = j->own->mesh;
@@ -290,14 +294,8 @@ static sn_status do_region(job *j, int r, sn_calibration_region *region) {
         if (body.number[i] >= 0) node[body.number[i]] = i;
     SN_TRY_GOTO(status, sn_calibration_body_take(&body, j->rule_set));
     if (full) SN_TRY_GOTO(status, full_constants(j->exact, &body, region));
-    SN_TRY_GOTO(status, sn_calibration_small(&body, region));
-    // the net's own rule, which baselines have their exponent from, refuses such tissues
-    const bool own_law = !sn_calibration_oriented(&j->own->tissue[r]);
-    SN_TRY_GOTO(status, sn_calibration_finite(&body, j->share,
-                                              full      ? SN_CALIBRATION_FIT_LAW
-                                              : own_law ? SN_CALIBRATION_FIT_NOTHING
-                                                        : SN_CALIBRATION_FIT_EXPONENT,
-                                              region));
+    if (j->tested) SN_TRY_GOTO(status, sn_calibration_small(&body, region));
+    SN_TRY_GOTO(status, sn_calibration_finite(&body, j->share, fit_of(j, r), region));
     if (!full) j->rule_set->exponent[r] = body.c->springs_given->exponent[0];
     if (full) SN_TRY_GOTO(status, append(j->set, &body, node));
 fail:
@@ -352,9 +350,9 @@ static sn_status check_fibres(const sn_case *c) {
     return SN_OK;
 }
 
-sn_status sn_calibrate_to(const sn_case *c, sn_calibration_rule rule, double strain,
-                          const sn_output *progress, sn_calibration *out) {
-    job j = {.rule = rule, .strain = strain, .share = {1, 1, 1}};
+static sn_status calibrate(const sn_case *c, sn_calibration_rule rule, double strain, bool tested,
+                           const sn_output *progress, sn_calibration *out) {
+    job j = {.rule = rule, .tested = tested, .strain = strain, .share = {1, 1, 1}};
     sn_case *own = NULL;
     sn_spring_set *set = NULL;
     int *edge = NULL, edges = 0;
@@ -372,12 +370,13 @@ sn_status sn_calibrate_to(const sn_case *c, sn_calibration_rule rule, double str
     if (status != SN_OK) goto fail;
     tell(progress, 0.0, "springs");
     SN_TRY_GOTO(status, rule_springs(&j, &set));
-    if (strain == 0) {
+    const bool works = has_work(&j);
+    if (strain == 0 && works) {
         tell(progress, 0.1, "strain of the case");
         SN_TRY_GOTO(status, sn_calibration_strain(c, &j.strain, j.share));
     }
     j.rule_set = set;
-    for (; out->region_count < regions; out->region_count++) {
+    for (; works && out->region_count < regions; out->region_count++) {
         const int r = out->region_count;
         tell(progress, 0.2 + 0.8 * r / regions, own->mesh->region_name[r]);
         SN_TRY_GOTO(status, do_region(&j, r, &out->region[r]));
@@ -398,9 +397,25 @@ fail:
     return status;
 }
 
+sn_status sn_calibrate_to(const sn_case *c, sn_calibration_rule rule, double strain,
+                          const sn_output *progress, sn_calibration *out) {
+    return calibrate(c, rule, strain, true, progress, out);
+}
+
 sn_status sn_calibrate(const sn_case *c, sn_calibration_rule rule, const sn_output *progress,
                        sn_calibration *out) {
-    return sn_calibrate_to(c, rule, 0, progress, out);
+    return calibrate(c, rule, 0, true, progress, out);
+}
+
+sn_status sn_calibration_springs(const sn_case *c, sn_calibration_rule rule,
+                                 const sn_output *progress, sn_spring_set **set) {
+    sn_calibration calibration;
+    *set = NULL;
+    SN_TRY(calibrate(c, rule, 0, false, progress, &calibration));
+    *set = calibration.set;
+    calibration.set = NULL;
+    sn_calibration_destroy(&calibration);
+    return SN_OK;
 }
 
 void sn_calibration_destroy(sn_calibration *calibration) {

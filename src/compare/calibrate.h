@@ -36,8 +36,9 @@ typedef enum sn_calibration_finite_fit {
 sn_status sn_calibration_case(const sn_case *from, sn_case **c);
 /// The springs that a central net of a case takes by itself, or has been given.
 sn_status sn_calibration_affine(const sn_case *c, sn_spring_set **set);
-/// Springs by a published rule, uniform or Lloyd's, without the tests of sn_calibrate().
-sn_status sn_calibration_baseline(const sn_case *c, sn_calibration_rule rule, sn_spring_set **set);
+/// The springs of sn_calibrate() alone: what they err by is not found out, which costs most of it.
+sn_status sn_calibration_springs(const sn_case *c, sn_calibration_rule rule,
+                                 const sn_output *progress, sn_spring_set **set);
 /// Springs of all edges by region and ends, exponents 0; `stiffness` holds the sum over the cells
 /// around the edge of the edge length of a regular tetrahedron of their volume, m.
 sn_status sn_calibration_edges(const sn_mesh *mesh, sn_spring_set **set);

@@ -73,7 +73,7 @@ sn_status sn_calibration_strain(const sn_case *c, double *strain,
         if (sn_calibration_oriented(&c->tissue[r])) quick.springs.rung = SN_RUNG_COUPLED;
     quick.springs.volume = true;
     quick.springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
-    quick.springs.step = 0;
+    if (c->springs.integrator != SN_INTEGRATOR_QUASI_STATIC) quick.springs.step = 0;
     quick.output_every = fmax(c->output_every, c->until / FRAMES);
     watch w = {.mesh = c->mesh, .cell = sn_alloc((size_t)c->mesh->cell_count, sizeof *w.cell)};
     sn_record *history = NULL;

@@ -312,19 +312,6 @@ fail:
     return status;
 }
 
-static sn_status find_springs(const sn_case *c, sn_calibration_rule rule, const sn_output *output,
-                              sn_spring_set **set) {
-    sn_calibration calibration;
-    // what they err by is not asked here, and costs most of a calibration
-    if (rule == SN_CALIBRATION_UNIFORM || rule == SN_CALIBRATION_LLOYD)
-        return sn_calibration_baseline(c, rule, set);
-    SN_TRY(sn_calibrate(c, rule, output, &calibration));
-    *set = calibration.set;
-    calibration.set = NULL;
-    sn_calibration_destroy(&calibration);
-    return SN_OK;
-}
-
 // Gives the case the springs of the row's rule. A rule that cannot be had is noted in the model:
 // *possible is false then.
 static sn_status constants(sn_case *own, const sn_model_row *row, const sn_output *output,
@@ -333,7 +320,7 @@ static sn_status constants(sn_case *own, const sn_model_row *row, const sn_outpu
     if (row->rule < 0) return SN_OK;
     sn_spring_set *set = NULL;
     double start = sn_clock();
-    sn_status status = find_springs(own, (sn_calibration_rule)row->rule, output, &set);
+    sn_status status = sn_calibration_springs(own, (sn_calibration_rule)row->rule, output, &set);
     if (status == SN_E_MEMORY || status == SN_E_STOPPED) return status;
     if (status == SN_OK) {
         out->calibration_s = sn_clock() - start;
