@@ -19,7 +19,9 @@
 
 enum { RAMP_STEPS = 20, FEW_CORNERS = 8, CUTS_MOST = 24 };
 enum { SNAP_AFTER = 5, SNAPS_MOST = 4 }; // halvings of a step; snaps of a run
+enum { CRAWL_MOST = 30 };                // steps in a row that are hardly any
 static const double least_step = 1e-8;   // of the whole time
+static const double crawl = 1e-2;        // of the step that the run would take
 static const double grow = 1.5;
 
 //---- steps ---------------------------------------------------------------------------------------
@@ -285,6 +287,7 @@ static sn_status march(sn_balance *v) {
     pace p = {0};
     double corner = sn_net_next_corner(net, 0.0);
     long output = 1;
+    int crawled = 0;
     const sn_piece own[] = {{&output, sizeof output},
                             {&corner, sizeof corner},
                             {&p, sizeof p},
@@ -317,6 +320,11 @@ static sn_status march(sn_balance *v) {
         if (h < left && left - h < tiny) h = left;
         if (left > tiny) { // else an output and a corner at one time
             if (!step(v, &h)) return SN_OK;
+            crawled = h < crawl * fmin(p.longest, left) ? crawled + 1 : 0;
+            if (crawled == CRAWL_MOST) {
+                give_up(v, h);
+                return SN_OK;
+            }
             p.wish = h < asked ? h : fmax(p.wish, h) * grow;
             if (net->asked_step > 0 && h == asked) p.wish = net->asked_step;
         }
