@@ -27,9 +27,9 @@ typedef struct sn_balance {
     double scale, least; ///< of the residual; the least of it: when nothing pulls
     double smallest;     ///< volume ratio of any cell
     double residual;
-    double firm;  ///< about the largest stiffness of a node over its mass, 1/s2
-    bool snapped; ///< in the step under way
-    int snaps;
+    double firm;       ///< about the largest stiffness of a node over its mass, 1/s2
+    bool snapped;      ///< in the step under way
+    int let_go, snaps; ///< how often the body was let go, and found another equilibrium
     double first_snap; ///< s
     double given_off;  ///< by snaps, J
 } sn_balance;

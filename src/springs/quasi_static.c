@@ -18,7 +18,7 @@
 #include "springs/steps.h"
 
 enum { RAMP_STEPS = 20, FEW_CORNERS = 8, CUTS_MOST = 24 };
-enum { SNAP_AFTER = 5, SNAPS_MOST = 4 }; // halvings of a step; snaps of a run
+enum { SNAP_AFTER = 5, SNAPS_MOST = 4 }; // halvings of a step; times that a body is let go
 enum { CRAWL_MOST = 30 };                // steps in a row that are hardly any
 static const double least_step = 1e-8;   // of the whole time
 static const double crawl = 1e-2;        // of the step that the run would take
@@ -254,7 +254,8 @@ static bool step(sn_balance *v, double *h) {
         v->time = v->s->time + *h;
         use_factors(v, *h);
         if (sn_balance_equilibrium(v, *h)) break;
-        if (cuts == SNAP_AFTER && v->snaps < SNAPS_MOST) {
+        if (cuts == SNAP_AFTER && v->let_go < SNAPS_MOST) {
+            v->let_go++;
             stored = sn_run_store(v->run, &moment);
             v->snapped = sn_balance_snap(v, *h);
             if (v->snapped) break;
@@ -294,6 +295,7 @@ static sn_status march(sn_balance *v) {
                             {&v->last_step, sizeof v->last_step},
                             {v->last, n * sizeof *v->last},
                             {v->inner, n * sizeof *v->inner},
+                            {&v->let_go, sizeof v->let_go},
                             {&v->snaps, sizeof v->snaps},
                             {&v->first_snap, sizeof v->first_snap},
                             {&v->given_off, sizeof v->given_off}};
