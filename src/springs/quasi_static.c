@@ -18,7 +18,7 @@
 #include "springs/steps.h"
 
 enum { RAMP_STEPS = 20, FEW_CORNERS = 8, CUTS_MOST = 24 };
-enum { SNAP_AFTER = 5, SNAPS_MOST = 4 }; // halvings of a step; times that a body is let go
+enum { SNAP_AFTER = 5, SNAPS_MOST = 2 }; // halvings of a step; times that a body is let go
 enum { CRAWL_MOST = 30 };                // steps in a row that are hardly any
 static const double least_step = 1e-8;   // of the whole time
 static const double crawl = 1e-2;        // of the step that the run would take
