@@ -261,7 +261,9 @@ static bool step(sn_balance *v, double *h) {
             if (v->snapped) break;
         }
         v->run->summary->cutbacks++;
-        if (*h < least_step * v->net->until) {
+        // a body that has snapped as often as it may loses its hold again and again
+        const bool lost = cuts == SNAP_AFTER && v->snaps > 0 && v->let_go == SNAPS_MOST;
+        if (*h < least_step * v->net->until || lost) {
             give_up(v, *h);
             return false;
         }
