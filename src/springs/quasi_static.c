@@ -245,8 +245,9 @@ static pace set_pace(const sn_balance *v, int corners) {
     return p;
 }
 
-// one step of at most h to v->s->time + h; false where none, however short, succeeds
-static bool step(sn_balance *v, double *h) {
+// one step of at most h to v->s->time + h, or of `far` where the body is let go: that drives it on;
+// false where none, however short, succeeds
+static bool step(sn_balance *v, double far, double *h) {
     const sn_moment moment = moment_of(v);
     double wall = sn_clock(), stored = 0;
     v->snapped = false;
@@ -257,8 +258,13 @@ static bool step(sn_balance *v, double *h) {
         if (cuts == SNAP_AFTER && v->let_go < SNAPS_MOST) {
             v->let_go++;
             stored = sn_run_store(v->run, &moment);
-            v->snapped = sn_balance_snap(v, *h);
-            if (v->snapped) break;
+            v->time = v->s->time + far;
+            use_factors(v, far);
+            v->snapped = sn_balance_snap(v, far);
+            if (v->snapped) {
+                *h = far;
+                break;
+            }
         }
         v->run->summary->cutbacks++;
         // a body that has snapped as often as it may loses its hold again and again
@@ -323,7 +329,7 @@ static sn_status march(sn_balance *v) {
         double asked = h;
         if (h < left && left - h < tiny) h = left;
         if (left > tiny) { // else an output and a corner at one time
-            if (!step(v, &h)) return SN_OK;
+            if (!step(v, fmin(p.longest, left), &h)) return SN_OK;
             crawled = h < crawl * fmin(p.longest, left) ? crawled + 1 : 0;
             if (crawled == CRAWL_MOST) {
                 give_up(v, h);
