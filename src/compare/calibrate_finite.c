@@ -10,21 +10,26 @@
 // free, alike in both directions, and simple shear. B, C, c and a factor on all stiffnesses bring
 // the stress closest to the tissue's, each path measured by its largest stress and weighed by what
 // the case does; a small price on B, C and c keeps those near 0 that the strain is too small for.
-// The least squares are found by Levenberg's and Marquardt's method, from the best B alone and
-// from a law of squares alone. The sides of net and tissue find their own places: stretched springs
-// pull on the volume too, which no tissue with a deviatoric law does, and where kappa is small that
-// shows in the force. Of a uniaxial law only its curve is known, stretching, and only B is fitted.
+// The least squares are found by Levenberg's and Marquardt's method (MINPACK, by cminpack), from
+// the best B alone and from a law of squares alone. The sides of net and tissue find their own
+// places: stretched springs pull on the volume too, which no tissue with a deviatoric law does, and
+// where kappa is small that shows in the force. Of a uniaxial law only its curve is known,
+// stretching, and only B is fitted.
 //
 // Springs of a lattice enter by their directions; those that differ by a few degrees are taken
 // together. Springs that were fitted at every node enter as what they were fitted to: the sum over
 // a body that is not straight mixes directions that no point of it has.
+#include <cminpack.h>
 #include <math.h>
 #include <string.h>
 
 #include "compare/calibrate.h"
 
-enum { GRID = 12, BINS = 3 * GRID * GRID, LEVELS = 6, PATHS = 9, VALUES = 6, TURNS = 60 };
+enum { GRID = 12, BINS = 3 * GRID * GRID, LEVELS = 6, PATHS = 9, VALUES = 6, CALLS = 400 };
 #define RESIDUALS (PATHS * LEVELS + PATHS + VALUES)
+static const double enough = 1e-9;            // of the sum of squares and of the values
+static const double wobble = 1e-10;           // of the residuals: slopes by steps of its root
+static const double far_off = 1e3;            // a residual that is none
 enum { FACTOR, EXPONENT, UP, DOWN = UP + 3 }; // what is fitted
 static const char *const path_name[PATHS] = {"stretch x",  "stretch y",  "stretch z",
                                              "compress x", "compress y", "compress z",
@@ -287,69 +292,29 @@ static double residuals(finite_fit *f, double *r) {
     return isfinite(sum) ? sum : (double)INFINITY;
 }
 
-// x <- A^-1 x by Gauss's method, A symmetric and positive definite
-static void solve(double A[VALUES][VALUES], double *x, int n) {
-    for (int p = 0; p < n; p++)
-        for (int i = p + 1; i < n; i++) {
-            const double factor = A[i][p] / A[p][p];
-            for (int j = p; j < n; j++) A[i][j] -= factor * A[p][j];
-            x[i] -= factor * x[p];
-        }
-    for (int i = n - 1; i >= 0; i--) {
-        for (int j = i + 1; j < n; j++) x[i] -= A[i][j] * x[j];
-        x[i] /= A[i][i];
-    }
+// as lmdif wants it
+static int evaluate(void *context, int residual_count, int count, const double *x, double *r,
+                    int what) {
+    finite_fit *f = context;
+    (void)what;
+    for (int v = 0; v < count; v++) set_value(f, f->from + v, x[v]);
+    if (!isfinite(residuals(f, r))) // no net: lmdif goes back
+        for (int k = 0; k < residual_count; k++) r[k] = far_off;
+    return 0;
 }
 
-// A and b of the normal equations at the present values, slopes by differences
-static void normal_equations(finite_fit *f, const double *r, double A[VALUES][VALUES], double *b) {
-    double slope[VALUES][RESIDUALS];
-    for (int v = f->from; v < f->to; v++) {
-        const double here = get_value(f, v), step = 1e-5 * (1 + fabs(here));
-        set_value(f, v, here + step);
-        residuals(f, slope[v]);
-        for (int k = 0; k < RESIDUALS; k++) slope[v][k] = (slope[v][k] - r[k]) / step;
-        set_value(f, v, here);
-    }
-    for (int v = f->from; v < f->to; v++) {
-        b[v - f->from] = 0;
-        for (int k = 0; k < RESIDUALS; k++) b[v - f->from] -= slope[v][k] * r[k];
-        for (int w = f->from; w < f->to; w++) {
-            double *to = &A[v - f->from][w - f->from];
-            *to = 0;
-            for (int k = 0; k < RESIDUALS; k++) *to += slope[v][k] * slope[w][k];
-        }
-    }
-}
-
-// from the present values; returns the sum of squares that it comes to
+// from the present values, by Levenberg and Marquardt (MINPACK, by cminpack); returns the sum of
+// squares that it comes to
 static double improve(finite_fit *f) {
-    double r[RESIDUALS], A[VALUES][VALUES], M[VALUES][VALUES], b[VALUES], x[VALUES];
-    double sum = residuals(f, r), damping = 1e-3;
+    double x[VALUES], r[RESIDUALS], jacobian[VALUES * RESIDUALS];
+    double diagonal[VALUES], qtf[VALUES], work[3][VALUES], more[RESIDUALS];
+    int pivot[VALUES], calls = 0;
     const int n = f->to - f->from;
-    for (int turn = 0; turn < TURNS && isfinite(sum); turn++) {
-        const double last = sum;
-        double before[VALUES];
-        memcpy(before, f->value, sizeof before);
-        normal_equations(f, r, A, b);
-        for (; damping < 1e8; damping *= 4) {
-            memcpy(M, A, sizeof M);
-            memcpy(x, b, sizeof x);
-            for (int v = 0; v < n; v++) M[v][v] += damping * A[v][v] + 1e-30;
-            solve(M, x, n);
-            for (int v = 0; v < n; v++) set_value(f, f->from + v, get_value(f, f->from + v) + x[v]);
-            sum = residuals(f, r);
-            if (sum < last) break;
-            memcpy(f->value, before, sizeof before);
-        }
-        if (!(sum < last)) { // no way down
-            sum = residuals(f, r);
-            break;
-        }
-        damping *= 0.1;
-        if (last - sum < 1e-9 * sum) break;
-    }
-    return sum;
+    for (int v = 0; v < n; v++) x[v] = get_value(f, f->from + v);
+    lmdif(evaluate, f, RESIDUALS, n, x, r, enough, enough, 0.0, CALLS, wobble, diagonal, 1, 1.0, 0,
+          &calls, jacobian, RESIDUALS, pivot, qtf, work[0], work[1], work[2], more);
+    for (int v = 0; v < n; v++) set_value(f, f->from + v, x[v]);
+    return residuals(f, r);
 }
 
 // the exponent alone, by a scan
