@@ -221,7 +221,9 @@ typedef struct sn_springs_def {
                     ///< the rigid motion of the body
     double stiffness_damping; ///< stiffness-proportional Rayleigh coefficient, s: a stress of this
                               ///< times the rate of the instantaneous elastic stress
-    double memory_tolerance;  ///< largest error of the exponentials, of G(0)
+    double tolerance; ///< quasi-static, implicit: relative residual at which Newton stops; 0: 1e-10
+                      ///< and 1e-8
+    double memory_tolerance; ///< largest error of the exponentials, of G(0)
     bool cuttable; ///< a program may remove cells (sn_state_cut); with cuts in the case it may
 } sn_springs_def;
 

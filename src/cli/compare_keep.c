@@ -28,6 +28,7 @@ static uint64_t mix_settings(uint64_t hash, const sn_case *c) {
                               (double)s->precision,
                               s->damping,
                               s->stiffness_damping,
+                              s->tolerance,
                               s->memory_tolerance,
                               (double)e->analysis,
                               e->steps,

@@ -66,11 +66,11 @@ static sn_status read_damping(const sn_yaml *node, sn_springs_def *def) {
 
 sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
     static const char *const keys[] = {
-        "model",     "volume",  "integrator", "scheme",           "step",
-        "precision", "threads", "damping",    "memory_tolerance", "constants"};
+        "model",   "volume",  "integrator",       "scheme",    "step",     "precision",
+        "threads", "damping", "memory_tolerance", "constants", "tolerance"};
     const sn_yaml *value;
     int index;
-    SN_TRY(sn_yaml_map(node, keys, 10));
+    SN_TRY(sn_yaml_map(node, keys, (int)(sizeof keys / sizeof *keys)));
     if ((value = sn_yaml_get(node, "model"))) {
         SN_TRY(sn_yaml_choice(value, rung_names, 3, &index));
         def->rung = (sn_rung)index;
@@ -93,7 +93,12 @@ sn_status sn_case_read_springs(const sn_yaml *node, sn_springs_def *def) {
     if ((value = sn_yaml_get(node, "damping"))) SN_TRY(read_damping(value, def));
     if ((value = sn_yaml_get(node, "memory_tolerance")))
         SN_TRY(read_tolerance(value, &def->memory_tolerance));
-    return SN_OK;
+    if (!(value = sn_yaml_get(node, "tolerance"))) return SN_OK;
+    if (def->integrator == SN_INTEGRATOR_EXPLICIT)
+        return sn_yaml_fail(value, SN_E_DEFINITION,
+                            "the explicit integrator solves no equations; give \"integrator: "
+                            "quasi-static\" or \"implicit\" too, or leave it away");
+    return read_tolerance(value, &def->tolerance);
 }
 
 // A longest step, or a tolerance that chooses the steps: what a dynamic run does unless told.

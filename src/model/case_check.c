@@ -392,6 +392,11 @@ static sn_status check_settings(const sn_case *c) {
     SN_TRY(check_positive("time: until", "s", c->until));
     SN_TRY(check_positive("time: output_every", "s", c->output_every));
     SN_TRY(check_positive("springs: memory_tolerance", "", c->springs.memory_tolerance));
+    if (!(c->springs.tolerance >= 0 && c->springs.tolerance < 1))
+        return sn_fail(SN_E_RANGE,
+                       "springs: tolerance is %g: less than 1 expected, or 0 for that of the "
+                       "integrator",
+                       c->springs.tolerance);
     SN_TRY(check_positive("springs: threads", "", c->springs.threads));
     if (!(c->springs.step >= 0) || !isfinite(c->springs.step))
         return sn_fail(SN_E_RANGE, "springs: step is %g s: positive expected, or auto",

@@ -313,16 +313,17 @@ void sn_net_add_load(const sn_net *net, int load, double factor, const sn_load_c
         if (call->parts && call->parts->load_gone[load][f]) continue;
         for (int k = 0; k < 3; k++) position(net, call->precision, call->u, node[k], x[k]);
         push_face(x, factor * l->pressure, force);
+        if (call->tangent) sn_tangent_add_pressure(call->tangent, node, x, factor * l->pressure);
         for (int k = 0; k < 3; k++)
             for (int d = 0; d < 3; d++) ext[3 * node[k] + d] += force[d];
     }
 }
 
-void sn_net_loads(const sn_net *net, double t, const sn_load_call *call, double *ext) {
+void sn_net_loads(const sn_net *net, double t, double part, const sn_load_call *call, double *ext) {
     for (int l = 0; l < net->load_count; l++) {
         double factor;
         sn_history_at(net->load[l].factor, t, &factor);
-        sn_net_add_load(net, l, factor, call, ext);
+        sn_net_add_load(net, l, part * factor, call, ext);
     }
 }
 

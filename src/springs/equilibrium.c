@@ -16,13 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-enum {
-    NEWTON_MOST = 40,
-    HALVINGS = 10,
-    SNAP_MOST = 100
-};                                     // SNAP_MOST: corrections of a body let go
-static const double tolerance = 1e-10; // residual over reactions and loads
-static const double settled = 1e-7;    // the same where rounding allows no less
+enum { NEWTON_MOST = 40, HALVINGS = 10 };
+enum { SNAP_MOST = 100 }; // corrections of a body let go
+static const double settled =
+    1e-7; // residual over reactions and loads, where rounding allows no less
 static const double crushed = 0.3; // volume ratio: a body that folds into itself is not followed
 
 //---- residual ------------------------------------------------------------------------------------
@@ -56,11 +53,10 @@ static void external(sn_balance *v, sn_tangent *tangent) {
     const sn_net *net = v->net;
     sn_state *s = v->s;
     memset(v->ext, 0, (size_t)net->nodes * 3 * sizeof *v->ext);
-    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s)};
-    sn_net_loads(net, v->time, &load, v->ext);
+    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s), tangent};
+    sn_net_loads(net, v->time, v->level, &load, v->ext);
     for (int i = 0; i < net->nodes; i++)
-        for (int d = 0; d < 3; d++)
-            v->ext[3 * i + d] = v->level * (v->ext[3 * i + d] + net->mass[i] * net->gravity[d]);
+        for (int d = 0; d < 3; d++) v->ext[3 * i + d] += v->level * net->mass[i] * net->gravity[d];
     for (int t = 0; t < net->tool_count; t++)
         sn_net_tool_pose(net, s, t, v->time, &s->tool_pose[t]);
     const sn_contact_call call = {.precision = SN_DOUBLE,
@@ -119,7 +115,7 @@ static void assemble(sn_balance *v) {
                                   .pressure = v->s->now.pressure,
                                   .parts = sn_state_parts(v->s)};
     sn_tangent_assemble(v->net, v->tangent, &call);
-    if (v->net->tool_count > 0) external(v, v->tangent);
+    external(v, v->tangent);
     sn_tangent_prepare(v->net, v->tangent);
 }
 
@@ -195,7 +191,7 @@ static bool correct(sn_balance *v, double forcing) {
     const size_t n = (size_t)v->net->nodes * 3;
     assemble(v);
     memset(v->x, 0, n * sizeof *v->x);
-    double goal = fmax(forcing * v->residual, 0.2 * tolerance * v->scale);
+    double goal = fmax(forcing * v->residual, 0.2 * v->net->tolerance * v->scale);
     sn_tangent_solve(v->net, v->tangent, v->b, goal, v->x);
     remember_place(v);
     double part = 1.0, before = v->residual;
@@ -216,10 +212,11 @@ bool sn_balance_equilibrium(sn_balance *v, double h) {
     const size_t quads = (size_t)v->net->nodes * 4;
     memcpy(v->start, v->s->u, quads * sizeof *v->start);
     v->residual = sn_balance_residual(v, SN_MEMORY_TRIAL);
-    if (v->residual <= tolerance * v->scale && !prescribed_motion(v)) return true; // nothing acts
+    if (v->residual <= v->net->tolerance * v->scale && !prescribed_motion(v))
+        return true; // nothing acts
     bool good = predict(v, h);
     double forcing = 1e-2;
-    for (int turn = 0; good && v->residual > tolerance * v->scale; turn++) {
+    for (int turn = 0; good && v->residual > v->net->tolerance * v->scale; turn++) {
         double before = v->residual;
         v->run->summary->newton_iterations++;
         good = turn < NEWTON_MOST && correct(v, forcing);
@@ -241,7 +238,7 @@ static bool creep(sn_balance *v, double resistance) {
         sn_tangent_prepare(v->net, v->tangent);
     }
     memset(v->x, 0, (size_t)v->net->nodes * 3 * sizeof *v->x);
-    const double goal = fmax(1e-2 * before, 0.2 * tolerance * v->scale);
+    const double goal = fmax(1e-2 * before, 0.2 * v->net->tolerance * v->scale);
     const bool definite = sn_tangent_solve(v->net, v->tangent, v->b, goal, v->x) >= 0;
     remember_place(v);
     if (definite) {
@@ -253,6 +250,7 @@ static bool creep(sn_balance *v, double resistance) {
         }
     }
     place(v, 0.0);
+    v->smallest = sn_net_smallest_ratio(v->net, sn_state_parts(v->s), v->s->u);
     v->residual = sn_balance_residual(v, SN_MEMORY_TRIAL);
     return false;
 }
@@ -265,7 +263,7 @@ bool sn_balance_snap(sn_balance *v, double h) {
     v->residual = sn_balance_residual(v, SN_MEMORY_TRIAL);
     bool good = !prescribed_motion(v) || predict(v, h);
     double resistance = 1e-3 * most;
-    for (int turn = 0; good && v->residual > tolerance * v->scale; turn++) {
+    for (int turn = 0; good && v->residual > v->net->tolerance * v->scale; turn++) {
         const double before = v->residual;
         v->run->summary->newton_iterations++;
         good = turn < SNAP_MOST && resistance < most && v->smallest > crushed;

@@ -104,12 +104,14 @@ typedef struct sn_load_call {
     sn_precision precision;
     const void *u; ///< quads
     const sn_parts *parts;
+    struct sn_tangent *tangent; ///< Nullable: gets the slopes of pressures, see
+                                ///< sn_tangent_add_pressure()
 } sn_load_call;
 /// Adds a load to ext (nodes x 3).
 void sn_net_add_load(const sn_net *net, int load, double factor, const sn_load_call *call,
                      double *ext);
-/// Adds all loads, with their own factors.
-void sn_net_loads(const sn_net *net, double t, const sn_load_call *call, double *ext);
+/// Adds all loads, with their own factors times `part`.
+void sn_net_loads(const sn_net *net, double t, double part, const sn_load_call *call, double *ext);
 /// Clears ext at the loaded nodes.
 void sn_net_clear_ext(const sn_net *net, const sn_parts *parts, double *ext);
 /// Contact with tools: forces into ext, sum by tool into tool_force; `after` may be `before`.
@@ -157,6 +159,11 @@ void sn_tangent_add(sn_tangent *tangent, int node, const double block[9]);
 /// A sn_tangent_sink that adds a block, which friction may make unsymmetric, to the tangent
 /// `context`.
 void sn_tangent_add_contact(void *context, int node, const double block[9]);
+/// Adds the symmetric part of minus the slope of the forces of a pressure on a face with nodes at
+/// x. Only at the rim of the surface is that not the whole: where the rim is held, or there is
+/// none, a pressure has the energy -p V.
+void sn_tangent_add_pressure(sn_tangent *tangent, const int node[3], double x[3][3],
+                             double pressure);
 /// Adds factor times the mass of each node.
 void sn_tangent_add_mass(const sn_net *net, sn_tangent *tangent, double factor);
 /// Takes factor sum b b^T off every product from now on; the vectors b stay the caller's.

@@ -28,10 +28,10 @@
 #include "springs/vectors.h"
 
 enum { NEWTON_MOST = 25, HALVINGS = 8, FEW_CORNERS = 8 };
-static const double tolerance = 1e-8; // residual over the forces at work
-static const double settled = 1e-6;   // the same where rounding allows no less
-static const double forcing = 1e-2;   // of the linear solves, over the residual
-static const double slow = 0.2;       // a correction that leaves more wants a new tangent
+static const double settled =
+    1e-6; // residual over the forces at work, where rounding allows no less
+static const double forcing = 1e-2; // of the linear solves, over the residual
+static const double slow = 0.2;     // a correction that leaves more wants a new tangent
 static const double most_growth = 2.4;
 static const double least_part = 1.0 / 1024; // of the net's step: shorter ones are given up
 
@@ -180,10 +180,10 @@ static void move_along(const sn_net *net, sn_state *s, sn_implicit *im) {
         }
 }
 
-// loads and contact at s->u and s->time + h, into s->ext; blocks of contact into a tangent
+// loads and contact at s->u and s->time + h, into s->ext; their slopes into a tangent
 static void find_ext(const sn_net *net, sn_state *s, sn_implicit *im, sn_tangent *tangent) {
     const double time = s->time + im->h;
-    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s)};
+    const sn_load_call load = {SN_DOUBLE, s->u, sn_state_parts(s), tangent};
     sn_net_clear_ext(net, load.parts, s->ext);
     for (int l = 0; l < net->load_count; l++)
         sn_net_add_load(net, l, sn_state_load_factor(net, s, net->load[l].name, time), &load,
@@ -258,7 +258,7 @@ static void assemble(const sn_net *net, sn_state *s, sn_implicit *im) {
                                   .pressure = s->now.pressure,
                                   .parts = sn_state_parts(s)};
     sn_tangent_assemble(net, im->tangent, &call);
-    if (net->tool_count > 0) find_ext(net, s, im, im->tangent);
+    if (sn_net_loaded(net, call.parts) > 0) find_ext(net, s, im, im->tangent);
     sn_tangent_add_mass(net, im->tangent, c * (c + net->damping));
     int pieces = 1;
     const int *piece = sn_state_pieces(s, &pieces);
@@ -340,7 +340,7 @@ static bool approach(const sn_net *net, sn_state *s, sn_implicit *im) {
 static bool correct(const sn_net *net, sn_state *s, sn_implicit *im) {
     const double before = im->residual;
     memset(im->x, 0, (size_t)net->nodes * 3 * sizeof *im->x);
-    const double goal = fmax(forcing * before, 0.2 * tolerance * im->scale);
+    const double goal = fmax(forcing * before, 0.2 * net->tolerance * im->scale);
     sn_tangent_solve(net, im->tangent, im->b, goal, im->x);
     remember_place(net, s, im);
     double part = 1.0;
@@ -358,7 +358,7 @@ static bool find_place(const sn_net *net, sn_state *s, sn_implicit *im) {
     if (im->tangent_step != im->h || im->tangent_g != im->g) im->fresh = false;
     im->residual = NAN;
     if (!predict(net, s, im) && !approach(net, s, im)) return false;
-    for (int turn = 0; im->residual > tolerance * im->scale; turn++) {
+    for (int turn = 0; im->residual > net->tolerance * im->scale; turn++) {
         const double before = im->residual;
         const bool old = im->fresh;
         if (turn >= NEWTON_MOST) return im->residual < settled * im->scale;

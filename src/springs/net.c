@@ -310,6 +310,9 @@ static sn_status copy_case(const sn_case *c, sn_net *net) {
     net->output_every = c->output_every;
     net->scheme = def->scheme;
     net->asked_step = def->step;
+    net->tolerance = def->tolerance > 0                              ? def->tolerance
+                     : def->integrator == SN_INTEGRATOR_QUASI_STATIC ? 1e-10
+                                                                     : 1e-8;
     net->cuttable = def->cuttable || c->cut_count > 0;
     memcpy(net->gravity, c->gravity, sizeof net->gravity);
     net->threads = sn_team_limit(def->threads);

@@ -174,6 +174,7 @@ struct sn_net {
     double damping;
     double until, output_every;
     double asked_step; ///< of the case; 0: chosen
+    double tolerance;  ///< relative residual at which Newton stops: quasi-static, implicit
     double step;       ///< explicit, implicit
     double omega2;     ///< highest eigenvalue of M^-1 K at rest, 1/s2
     double *mode;      ///< of omega2, in mass-scaled displacements      (nodes x 3)

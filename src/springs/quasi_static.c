@@ -336,7 +336,6 @@ static sn_status march(sn_balance *v) {
                 return SN_OK;
             }
             p.wish = h < asked ? h : fmax(p.wish, h) * grow;
-            if (net->asked_step > 0 && h == asked) p.wish = net->asked_step;
         }
         if (v->s->time < next - tiny) continue;
         v->s->time = next;

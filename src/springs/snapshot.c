@@ -55,6 +55,7 @@ uint64_t sn_net_fingerprint(const sn_case *c, const sn_net *net) {
                               net->until,
                               net->output_every,
                               net->asked_step,
+                              net->tolerance,
                               net->step,
                               net->omega2,
                               SN_BLOCK,

@@ -103,7 +103,7 @@ void sn_state_destroy(sn_state *s) {
 // loads and contact at the present place and time, added to the forces
 static void find_outer(const sn_net *net, sn_state *s) {
     const sn_parts *parts = sn_state_parts(s);
-    const sn_load_call load = {s->precision, s->u, parts};
+    const sn_load_call load = {s->precision, s->u, parts, NULL};
     const bool touched = s->touching;
     if (net->load_count > 0 || touched) sn_net_clear_ext(net, parts, s->ext);
     for (int l = 0; l < net->load_count; l++)

@@ -375,6 +375,25 @@ void sn_tangent_add_contact(void *context, int node, const double block[9]) {
     sn_tangent_add(t, node, block);
 }
 
+void sn_tangent_add_pressure(sn_tangent *t, const int node[3], double x[3][3], double pressure) {
+    // f = -p/6 (x0 x x1 + x1 x x2 + x2 x x0) at each node: node b moves it by -p/6 du x e_b, where
+    // e_b is the edge to node b + 1 from node b + 2, so that the symmetric part of block (a, b) is
+    // p/12 times the matrix that takes du to (e_a - e_b) x du
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
+            if (a == b) continue;
+            double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, node[a], node[b]);
+            for (int d = 0; d < 3; d++) {
+                const int i = (d + 1) % 3, j = (d + 2) % 3;
+                const double e_a = x[(a + 1) % 3][d] - x[(a + 2) % 3][d];
+                const double e_b = x[(b + 1) % 3][d] - x[(b + 2) % 3][d];
+                const double part = pressure / 12.0 * (e_a - e_b);
+                to[3 * j + i] += part;
+                to[3 * i + j] -= part;
+            }
+        }
+}
+
 void sn_tangent_add_mass(const sn_net *net, sn_tangent *t, double factor) {
     for (int i = 0; i < net->nodes; i++) {
         double *to = t->block + 9 * (size_t)sn_sparsity_find(&t->cells, i, i);

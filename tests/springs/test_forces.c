@@ -336,10 +336,92 @@ static void tangents_are_force_slopes(void **state) {
     for_each_rung(tangent_is_force_slope);
 }
 
+// y <- (tangent with the pressure of load 0) x minus (tangent without it) x
+static void pressure_stiffness(const sn_net *net, const double *u, const double *x, double *y) {
+    sn_tangent *t;
+    const size_t n = (size_t)net->nodes * 3;
+    double *none = sn_alloc((size_t)net->point_blocks * SN_BLOCK + 1, sizeof *none);
+    double *before = sn_alloc(n, sizeof *before), *ext = sn_alloc(n, sizeof *ext);
+    CHECK_OK(sn_tangent_create(net, &t));
+    sn_tangent_assemble(net, t, &(sn_tangent_call){.u = u, .pressure = none});
+    sn_tangent_multiply(net, t, x, before);
+    const sn_load_call call = {SN_DOUBLE, u, NULL, t};
+    sn_net_loads(net, 1.0, 0.5, &call, ext); // half of it
+    sn_tangent_multiply(net, t, x, y);
+    for (size_t k = 0; k < n; k++) y[k] -= before[k];
+    sn_free(none);
+    sn_free(before);
+    sn_free(ext);
+    sn_tangent_destroy(t);
+}
+
+// ext <- half of the load at u + h v
+static void half_load_at(const sn_net *net, const double *u, const double *v, double h,
+                         double *ext) {
+    const size_t n = (size_t)net->nodes * 4;
+    double *there = sn_alloc(n, sizeof *there);
+    for (size_t k = 0; k < n; k++) there[k] = u[k] + h * v[k];
+    memset(ext, 0, (size_t)net->nodes * 3 * sizeof *ext);
+    sn_net_loads(net, 1.0, 0.5, &(sn_load_call){SN_DOUBLE, there, NULL, NULL}, ext);
+    sn_free(there);
+}
+
+// A pressure on the whole surface of a body has all of its slope in the tangent; one with a free
+// rim the symmetric part of it.
+static void pressure_stiffens_by_its_slope(void **state) {
+    (void)state;
+    const char *const surfaces[] = {"boundary", "top"};
+    for (int k = 0; k < 2; k++) {
+        sn_tissue t = neo_hookean(3e3, 2e4);
+        sn_case *c = make_block(size, cells, SN_PATTERN_MIRRORED, &t);
+        add_load(c, SN_LOAD_PRESSURE, surfaces[k], 0, 0, 0, 1)->pressure = 5e4;
+        sn_net *net;
+        CHECK_OK(sn_net_create(c, &net));
+        const int n = 3 * net->nodes;
+        double *u = random_motion(c, 0.12, 15), *way[2], *x[2], *y[2], slope[2][2] = {{0}};
+        double whole = 0, part = 0, *up = sn_alloc((size_t)n, sizeof *up),
+               *down = sn_alloc((size_t)n, sizeof *down);
+        const double h = 1e-2;
+        for (int a = 0; a < 2; a++) {
+            way[a] = random_motion(c, 0.1, 16 + (uint64_t)a);
+            x[a] = sn_alloc((size_t)n, sizeof *x[a]);
+            y[a] = sn_alloc((size_t)n, sizeof *y[a]);
+            for (int i = 0; i < n; i++) x[a][i] = way[a][4 * (i / 3) + i % 3];
+            pressure_stiffness(net, u, x[a], y[a]);
+        }
+        for (int a = 0; a < 2; a++) { // the force is of second order in u: differences are exact
+            half_load_at(net, u, way[a], h, up);
+            half_load_at(net, u, way[a], -h, down);
+            for (int i = 0; i < n; i++) {
+                const double d = -(up[i] - down[i]) / (2 * h);
+                for (int b = 0; b < 2; b++) slope[b][a] += x[b][i] * d;
+                whole = fmax(whole, fabs(d));
+                part = fmax(part, fabs(d - y[a][i]));
+            }
+        }
+        double symmetric = 0, mine = 0, scale = fabs(slope[0][0]) + fabs(slope[1][1]);
+        for (int i = 0; i < n; i++) {
+            symmetric += x[0][i] * y[1][i] - x[1][i] * y[0][i];
+            mine += x[0][i] * y[1][i];
+        }
+        // rounding of forces, 1e-16 of them over a step of 1e-2 of a tenth of an edge
+        if (k == 0) CHECK_ABS(part / whole, 0, 1e-12);
+        if (k == 1) assert_true(part / whole > 1e-2); // the rim
+        CHECK_ABS(symmetric / scale, 0, 1e-13);
+        CHECK_ABS((mine - 0.5 * (slope[0][1] + slope[1][0])) / scale, 0, 1e-12);
+        double *const all[] = {u, way[0], way[1], x[0], x[1], y[0], y[1], up, down};
+        for (int i = 0; i < 9; i++) sn_free(all[i]);
+        sn_net_destroy(net);
+        sn_case_destroy(c);
+    }
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coupled_cells_are_linear_elements),
-        cmocka_unit_test(forces_are_energy_slopes), cmocka_unit_test(rigid_motion_gives_no_force),
-        cmocka_unit_test(forces_balance), cmocka_unit_test(tangents_are_force_slopes)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(coupled_cells_are_linear_elements),
+                                       cmocka_unit_test(forces_are_energy_slopes),
+                                       cmocka_unit_test(rigid_motion_gives_no_force),
+                                       cmocka_unit_test(forces_balance),
+                                       cmocka_unit_test(tangents_are_force_slopes),
+                                       cmocka_unit_test(pressure_stiffens_by_its_slope)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

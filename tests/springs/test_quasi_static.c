@@ -183,9 +183,35 @@ static void dragged_plate_slips(void **state) {
     }
 }
 
+// A looser tolerance takes fewer corrections, and leaves an error of its own size.
+static void tolerance_is_kept(void **state) {
+    (void)state;
+    const double tolerance[] = {0, 1e-4, 1e-12};
+    double pull[3];
+    int corrections[3];
+    for (int k = 0; k < 3; k++) {
+        sn_tissue t = demiray(2e3, 4, 4e4);
+        sn_case *c = pulled_block(&t, 1.3, 1);
+        add_support(c, "left", "xyz"); // else the field is uniform
+        c->springs.tolerance = tolerance[k];
+        sn_run_summary s;
+        sn_record *r = run_case(c, &s);
+        assert_true(s.converged);
+        pull[k] = last_value(r, "pull_fx");
+        corrections[k] = s.newton_iterations;
+        sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+    assert_true(corrections[1] < corrections[0]);
+    CHECK_REL(pull[0], pull[2], 1e-9); // 1e-10 of the forces at work, unless told
+    CHECK_REL(pull[1], pull[2], 1e-3);
+    assert_true(fabs(pull[1] - pull[2]) > fabs(pull[0] - pull[2]));
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stretch_follows_the_law), cmocka_unit_test(relaxation_follows_the_memory),
-        cmocka_unit_test(held_block_converges), cmocka_unit_test(dragged_plate_slips)};
+        cmocka_unit_test(held_block_converges), cmocka_unit_test(dragged_plate_slips),
+        cmocka_unit_test(tolerance_is_kept)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
