@@ -248,7 +248,6 @@ static pace set_pace(const sn_balance *v, int corners) {
 // one step of at most h to v->s->time + h, or of `far` where the body is let go: that drives it on;
 // false where none, however short, succeeds
 static bool step(sn_balance *v, double far, double *h) {
-    const sn_moment moment = moment_of(v);
     double wall = sn_clock(), stored = 0;
     v->snapped = false;
     for (int cuts = 0;; cuts++) {
@@ -257,7 +256,8 @@ static bool step(sn_balance *v, double far, double *h) {
         if (sn_balance_equilibrium(v, *h)) break;
         if (cuts == SNAP_AFTER && v->let_go < SNAPS_MOST) {
             v->let_go++;
-            stored = sn_run_store(v->run, &moment);
+            const sn_moment before = moment_of(v); // the body is back where the step began
+            stored = sn_run_store(v->run, &before);
             v->time = v->s->time + far;
             use_factors(v, far);
             v->snapped = sn_balance_snap(v, far);
@@ -296,7 +296,7 @@ static sn_status march(sn_balance *v) {
     pace p = {0};
     double corner = sn_net_next_corner(net, 0.0);
     long output = 1;
-    int crawled = 0;
+    int crawled = 0; // not saved: a step that lands goes all that was left, which is no crawl
     const sn_piece own[] = {{&output, sizeof output},
                             {&corner, sizeof corner},
                             {&p, sizeof p},
@@ -338,6 +338,7 @@ static sn_status march(sn_balance *v) {
             p.wish = h < asked ? h : fmax(p.wish, h) * grow;
         }
         if (v->s->time < next - tiny) continue;
+        SN_ASSERT(crawled == 0);
         v->s->time = next;
         if (next == due) {
             moment = moment_of(v);

@@ -2,34 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bodies.h"
-#include "springs/net.h"
+#include "body.h"
 
 static const double size[3] = {0.06, 0.04, 0.04};
-
-/// What a test needs of one state.
-typedef struct body {
-    sn_case *c;
-    sn_net *net;
-    sn_state *s;
-} body;
-
-static inline body start(sn_case *c) {
-    body b = {.c = c};
-    CHECK_OK(sn_net_create(c, &b.net));
-    CHECK_OK(sn_state_create(b.net, &b.s));
-    return b;
-}
-
-static inline void end(body *b) {
-    sn_state_destroy(b->s);
-    sn_net_destroy(b->net);
-    sn_case_destroy(b->c);
-}
-
-static inline void run_for(const body *b, double seconds) {
-    for (double left = seconds; left > 1e-12;) left -= sn_state_step(b->net, b->s, left).step;
-}
 
 enum { KINDS = 6 }; // rungs, with volume and without
 

@@ -15,6 +15,22 @@ static inline int node_at(const sn_net *net, double x, double y, double z) {
     return -1;
 }
 
+/// Moves the memory on by h to s->u, and finds the forces there, without loads.
+/// @return the largest, N
+static inline double advance(const sn_net *net, sn_state *s, double h) {
+    double most = 0;
+    sn_net_factors(net, h, s->factors);
+    const sn_force_call call = {.precision = SN_DOUBLE,
+                                .mode = SN_MEMORY_ADVANCE,
+                                .u = s->u,
+                                .factors = s->factors,
+                                .store = s->store,
+                                .out = &s->now};
+    sn_net_forces(net, &call);
+    for (int i = 0; i < 4 * net->nodes; i++) most = fmax(most, fabs(((double *)s->now.f)[i]));
+    return most;
+}
+
 /// The tangent of the instantaneous law at u (quads), without pressure.
 static inline sn_tangent *tangent_at(const sn_net *net, const double *u) {
     sn_tangent *t;

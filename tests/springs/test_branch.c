@@ -2,8 +2,8 @@
 // known motions against quadrature, tangents, rotation, energies, bytes.
 // SPDX-License-Identifier: Apache-2.0
 #include "base/isa.h"
+#include "nets.h"
 #include "parted.h"
-#include "springs/state.h"
 
 static const double size[3] = {0.03, 0.02, 0.02};
 static const int cells[3] = {3, 2, 2};
@@ -326,20 +326,6 @@ static void tangents_are_force_slopes(void **state) {
         sn_net_destroy(net);
         sn_case_destroy(c);
     }
-}
-
-static double advance(const sn_net *net, sn_state *s, double h) {
-    double most = 0;
-    sn_net_factors(net, h, s->factors);
-    const sn_force_call call = {.precision = SN_DOUBLE,
-                                .mode = SN_MEMORY_ADVANCE,
-                                .u = s->u,
-                                .factors = s->factors,
-                                .store = s->store,
-                                .out = &s->now};
-    sn_net_forces(net, &call);
-    for (int i = 0; i < 4 * net->nodes; i++) most = fmax(most, fabs(((double *)s->now.f)[i]));
-    return most;
 }
 
 // A body of parts that all flow is strained and relaxes to nothing, each part in its own time. Then

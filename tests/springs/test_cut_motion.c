@@ -181,14 +181,6 @@ static void a_bar_in_two(void **state) {
 
 //---- all of it -----------------------------------------------------------------------------------
 
-static void check_finite(const body *b) {
-    for (int i = 0; i < 4 * b->net->nodes; i++) {
-        assert_true(isfinite(sn_real_at(b->s->precision, b->s->u, (size_t)i)));
-        assert_true(isfinite(sn_real_at(b->s->precision, b->s->v, (size_t)i)));
-        assert_true(isfinite(sn_real_at(b->s->precision, b->s->now.f, (size_t)i)));
-    }
-}
-
 // Every cell removed, one by one in the end: dust that falls. Debris is no load on the step.
 static void nothing_left(void **state) {
     (void)state;

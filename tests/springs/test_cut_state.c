@@ -1,6 +1,7 @@
 // Cut states: threads, bytes, other nets.
 // SPDX-License-Identifier: Apache-2.0
 #include "cuts.h"
+#include "kept.h"
 #include "springs/state.h"
 
 // The same with two threads as with one; bytes saved right after a cut bring the state back.
@@ -60,21 +61,6 @@ static void cuts_keep_bits(void **state) {
     }
 }
 
-/// The bytes of a run after one of its outputs.
-typedef struct keeper {
-    int left;
-    unsigned char *bytes;
-    size_t size;
-} keeper;
-
-static sn_status keep(void *context, const void *bytes, size_t count) {
-    keeper *k = context;
-    k->bytes = realloc(k->bytes, count);
-    memcpy(k->bytes, bytes, count);
-    k->size = count;
-    return --k->left == 0 ? sn_fail(SN_E_STOPPED, "killed") : SN_OK;
-}
-
 // Cuts at an output and between two; stopped after each output in turn, a run ends the same.
 static void cut_runs_go_on(void **state) {
     (void)state;
@@ -83,37 +69,20 @@ static void cut_runs_go_on(void **state) {
         c->springs.integrator = (sn_integrator)k;
         c->tissue[0].memory = prony(0.3, 0.01, 0.2, 0.2);
         add_cut(c, 0.03, (const double[3]){0.04, -1, -1}, (const double[3]){0.05, 0.015, 0.025});
-        sn_record *a, *b;
         sn_run_summary first, second;
-        CHECK_OK(sn_record_create("a", &a));
-        CHECK_OK(sn_springs_run(c, NULL, &first, a));
+        sn_record *a = run_case(c, &first);
         assert_true(first.converged && first.cells_removed > 36);
         for (int stop = 1; stop <= 4; stop++) {
-            keeper part = {.left = stop};
-            sn_restart point = {.context = &part, .save = keep};
-            CHECK_OK(sn_record_create("b", &b));
-            CHECK_FAILS(sn_springs_resume(c, NULL, &point, &second, b), SN_E_STOPPED, "killed");
-            sn_record_destroy(b);
-            unsigned char *from = malloc(part.size);
-            memcpy(from, part.bytes, part.size);
-            point.state = from;
-            point.bytes = part.size;
-            CHECK_OK(sn_record_create("b", &b));
-            CHECK_OK(sn_springs_resume(c, NULL, &point, &second, b));
-            assert_true(first.kinetic_J == second.kinetic_J && first.elastic_J == second.elastic_J);
-            assert_true(first.released_J == second.released_J);
-            assert_true(first.energy_residual == second.energy_residual);
-            assert_int_equal(first.cells_removed, second.cells_removed);
+            keeper kept = run_killed(c, NULL, stop);
+            sn_record *b = run_on(c, NULL, &kept, &second);
+            check_same_rows(a, b);
+            check_same_summary(first, second);
             sn_record_destroy(b);
             // another time of a cut is another case
             c->cut[1].at = 0.031;
-            CHECK_OK(sn_record_create("b", &b));
-            CHECK_FAILS(sn_springs_resume(c, NULL, &point, &second, b), SN_E_DEFINITION,
-                        "another net");
+            CHECK_RUN_ON_FAILS(c, NULL, &kept, SN_E_DEFINITION, "another net");
             c->cut[1].at = 0.03;
-            sn_record_destroy(b);
-            free(part.bytes);
-            free(from);
+            free(kept.bytes);
         }
         sn_record_destroy(a);
         sn_case_destroy(c);

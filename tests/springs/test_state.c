@@ -1,6 +1,6 @@
 // States that a program drives: bytes and back, what it imposes between steps, and bad input.
 // SPDX-License-Identifier: Apache-2.0
-#include "bodies.h"
+#include "kept.h"
 #include "springs/net.h"
 
 static const double size[3] = {0.04, 0.02, 0.02};
@@ -81,37 +81,21 @@ static void bytes_bring_a_state_back(void **state) {
 
 //---- runs ----------------------------------------------------------------------------------------
 
-typedef struct keeper {
-    int frames, stop_after, nodes, cells;
+typedef struct watcher {
+    int frames, nodes, cells;
     double sum; ///< of all numbers of the last frame
-    unsigned char *bytes;
-    size_t size;
-    int saves;
-} keeper;
+} watcher;
 
 static sn_status take_frame(void *context, const sn_frame *frame) {
-    keeper *k = context;
-    k->sum = 0;
+    watcher *w = context;
+    w->sum = 0;
     for (int f = 0; f < frame->field_count; f++) {
         const sn_field *field = &frame->fields[f];
-        int count = field->components * (field->place == SN_ON_NODES ? k->nodes : k->cells);
-        for (int n = 0; n < count; n++) k->sum += (n % 7 + 1) * field->value[n];
+        int count = field->components * (field->place == SN_ON_NODES ? w->nodes : w->cells);
+        for (int n = 0; n < count; n++) w->sum += (n % 7 + 1) * field->value[n];
     }
-    k->frames++;
+    w->frames++;
     return SN_OK;
-}
-
-static sn_status keep(void *context, const void *bytes, size_t count) {
-    keeper *k = context;
-    k->bytes = realloc(k->bytes, count);
-    memcpy(k->bytes, bytes, count);
-    k->size = count;
-    return ++k->saves == k->stop_after ? sn_fail(SN_E_STOPPED, "killed") : SN_OK;
-}
-
-static void without_wall(sn_run_summary *s) {
-    s->wall_s = s->real_time_factor = 0;
-    s->step_wall_p50_s = s->step_wall_p99_s = s->step_wall_max_s = 0;
 }
 
 // Stopped after each of its outputs in turn, a run ends with the same bits.
@@ -126,7 +110,7 @@ static void runs_go_on_where_they_were(void **state) {
         c->tool[0].grasp[0] = k == 0 ? 0.07 : 0;
         c->tool[0].grasp[1] = k == 0 ? 0.12 : 0;
         add_probe(c, "foot", SN_PROBE_REACTION, "bottom", 0, 0, 0);
-        keeper whole = {.nodes = c->mesh->node_count, .cells = c->mesh->cell_count};
+        watcher whole = {.nodes = c->mesh->node_count, .cells = c->mesh->cell_count};
         sn_output output = {.context = &whole, .frame = take_frame};
         sn_run_summary first, second;
         sn_record *a, *b, *e, *f;
@@ -137,55 +121,31 @@ static void runs_go_on_where_they_were(void **state) {
         assert_true(first.converged);
         assert_int_equal(a->rows, 5);
         for (int stop = 1; stop <= 4; stop++) {
-            keeper part = whole;
-            part.stop_after = stop;
+            watcher part = whole;
             output.context = &part;
-            sn_restart point = {.context = &part, .save = keep};
-            CHECK_OK(sn_record_create("b", &b));
             CHECK_OK(sn_record_create("f", &f));
             output.energy = f;
-            CHECK_FAILS(sn_springs_resume(c, &output, &point, &second, b), SN_E_STOPPED, "killed");
-            sn_record_destroy(b);
+            keeper kept = run_killed(c, &output, stop);
             sn_record_destroy(f);
-            CHECK_OK(sn_record_create("b", &b));
             CHECK_OK(sn_record_create("f", &f));
             output.energy = f;
             part.frames = 0;
-            unsigned char *from = malloc(part.size);
-            memcpy(from, part.bytes, part.size);
-            point.state = from;
-            point.bytes = part.size;
-            CHECK_OK(sn_springs_resume(c, &output, &point, &second, b));
+            b = run_on(c, &output, &kept, &second);
             assert_int_equal(part.frames, 5 - stop);
             assert_true(part.sum == whole.sum);
-            assert_int_equal(b->rows, a->rows);
-            for (int col = 0; col < a->series_count; col++)
-                assert_memory_equal(a->series[col].value, b->series[col].value,
-                                    (size_t)a->rows * sizeof(double));
+            check_same_rows(a, b);
             assert_int_equal(e->series_count, 7);
-            assert_int_equal(f->rows, a->rows);
-            for (int col = 0; col < e->series_count; col++)
-                assert_memory_equal(e->series[col].value, f->series[col].value,
-                                    (size_t)e->rows * sizeof(double));
-            sn_run_summary plain = first;
-            without_wall(&plain);
-            without_wall(&second);
-            assert_memory_equal(&plain, &second, sizeof plain);
-            sn_record_destroy(b);
-            CHECK_OK(sn_record_create("b", &b));
-            point.bytes--;
-            CHECK_FAILS(sn_springs_resume(c, &output, &point, &second, b), SN_E_DATA, "damaged");
-            point.bytes++;
+            check_same_rows(e, f);
+            check_same_summary(first, second);
+            kept.size--;
+            CHECK_RUN_ON_FAILS(c, &output, &kept, SN_E_DATA, "damaged");
+            kept.size++;
             c->until = 0.3;
-            sn_record_destroy(b);
-            CHECK_OK(sn_record_create("b", &b));
-            CHECK_FAILS(sn_springs_resume(c, &output, &point, &second, b), SN_E_DEFINITION,
-                        "another net");
+            CHECK_RUN_ON_FAILS(c, &output, &kept, SN_E_DEFINITION, "another net");
             c->until = 0.2;
             sn_record_destroy(b);
             sn_record_destroy(f);
-            free(part.bytes);
-            free(from);
+            free(kept.bytes);
         }
         sn_record_destroy(e);
         sn_record_destroy(a);
