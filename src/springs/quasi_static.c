@@ -18,10 +18,10 @@
 #include "springs/steps.h"
 
 enum { RAMP_STEPS = 20, FEW_CORNERS = 8, CUTS_MOST = 24 };
-enum { SNAP_AFTER = 5, SNAPS_MOST = 2 }; // halvings of a step; times that a body is let go
-enum { CRAWL_MOST = 30 };                // steps in a row that are hardly any
-static const double least_step = 1e-8;   // of the whole time
-static const double crawl = 1e-2;        // of the step that the run would take
+enum { SNAPS_MOST = 2, CRAWL_MOST = 30 };   // times that a body is let go; tiny steps in a row
+static const double least_step = 1e-8;      // of the whole time
+static const double crawl = 1e-2;           // of the step that the run would take
+static const double stuck_below = 1.0 / 32; // of that step: the body is let go
 static const double grow = 1.5;
 
 //---- steps ---------------------------------------------------------------------------------------
@@ -93,9 +93,9 @@ static void give_up(sn_balance *v, double h) {
     s->converged = false;
     snprintf(
         s->reason, sizeof s->reason,
-        "no equilibrium at %.6g s of %.6g s: residual %.2g of the forces, smallest volume ratio "
+        "no equilibrium after %.6g s of %.6g s: residual %.2g of the forces, smallest volume ratio "
         "of a cell %.3g, after %d cuts of the step down to %.2g s",
-        v->time, v->net->until, v->residual / v->scale, v->smallest, s->cutbacks, h);
+        v->s->time, v->net->until, v->residual / v->scale, v->smallest, s->cutbacks, h);
 }
 
 // factors of a change that takes no time
@@ -249,12 +249,18 @@ static pace set_pace(const sn_balance *v, int corners) {
 // false where none, however short, succeeds
 static bool step(sn_balance *v, double far, double *h) {
     double wall = sn_clock(), stored = 0;
+    bool tried = false;
     v->snapped = false;
-    for (int cuts = 0;; cuts++) {
+    for (;;) {
         v->time = v->s->time + *h;
         use_factors(v, *h);
         if (sn_balance_equilibrium(v, *h)) break;
-        if (cuts == SNAP_AFTER && v->let_go < SNAPS_MOST) {
+        // also where the cuts of several steps have brought h there: near a limit point
+        const bool stuck = !tried && *h <= stuck_below * far;
+        // a body that has snapped as often as it may loses its hold again and again
+        const bool lost = stuck && v->snaps > 0 && v->let_go == SNAPS_MOST;
+        if (stuck && v->let_go < SNAPS_MOST) {
+            tried = true;
             v->let_go++;
             const sn_moment before = moment_of(v); // the body is back where the step began
             stored = sn_run_store(v->run, &before);
@@ -267,8 +273,6 @@ static bool step(sn_balance *v, double far, double *h) {
             }
         }
         v->run->summary->cutbacks++;
-        // a body that has snapped as often as it may loses its hold again and again
-        const bool lost = cuts == SNAP_AFTER && v->snaps > 0 && v->let_go == SNAPS_MOST;
         if (*h < least_step * v->net->until || lost) {
             give_up(v, *h);
             return false;

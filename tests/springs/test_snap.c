@@ -90,8 +90,34 @@ static void snapping_runs_go_on(void **state) {
     sn_case_destroy(c);
 }
 
+// Whatever its steps, halved many times in one or a few times in each of several near the limit.
+static void any_step_snaps_through(void **state) {
+    (void)state;
+    static const double time[] = {0, 0.5, 1}, factor[] = {0, 1, 1}, step[] = {0.01, 0.02, 0.1};
+    double w[3];
+    for (int k = 0; k < 3; k++) {
+        sn_case *c = arch();
+        sn_run_summary s;
+        c->springs.integrator = SN_INTEGRATOR_QUASI_STATIC;
+        c->springs.step = step[k];
+        c->output_every = 0.1;
+        c->until = 1;
+        sn_history_destroy(c->load[0].factor);
+        CHECK_OK(sn_history_create(1, 3, time, factor, &c->load[0].factor));
+        sn_record *r = run_case(c, &s);
+        if (!s.converged) print_message("step %g s: %s\n", step[k], s.reason);
+        assert_true(s.converged);
+        assert_non_null(strstr(s.note, "in 1 of its steps"));
+        w[k] = last_value(r, "middle_uz");
+        CHECK_REL(w[k], w[0], 1e-6); // one equilibrium, to ten digits of the forces
+        sn_record_destroy(r);
+        sn_case_destroy(c);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(arch_snaps_through),
-                                       cmocka_unit_test(snapping_runs_go_on)};
+                                       cmocka_unit_test(snapping_runs_go_on),
+                                       cmocka_unit_test(any_step_snaps_through)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
