@@ -41,6 +41,7 @@ enum { ROOM_FIRST = 40, ROOM_MOST = 2000, LARGE = 2000, LARGE_ROUGH = 20000, BAS
 enum { BASIS_LARGE = 100, CYCLES_MOST = 500 }; // of multigrid
 #define HIERARCHY 10.0                         // what a hierarchy of multigrid costs, in cycles
 #define ROUGHNESS 1e-3                         // relative error of the blocks of low rank
+#define LEAST_PIVOT 1e-8                       // over the largest of its row
 #define FLOPS_AN_ENTRY 50.0 // that a factorisation does while one entry of the factors is applied
 
 static sn_status analyse(sn_fe_solver *s) {
@@ -56,9 +57,12 @@ static sn_status analyse(sn_fe_solver *s) {
     // PORD: two thirds of the time of the minimum degree that MUMPS takes for middle sizes
     if (rows > LARGE) TRY_PETSC(MatMumpsSetIcntl(s->factor, 7, 4), "MUMPS ordering");
     // blocks of low rank: factors that are good enough to start from, in two thirds of the time
+    // small pivots too: pressures have blocks of -1/kappa, and such a matrix (quasi-definite) has
+    // factors in any order; the search for large ones took half of the time
     if (s->rough) {
         TRY_PETSC(MatMumpsSetIcntl(s->factor, 35, 1), "MUMPS low rank");
         TRY_PETSC(MatMumpsSetCntl(s->factor, 7, ROUGHNESS), "MUMPS low rank");
+        TRY_PETSC(MatMumpsSetCntl(s->factor, 1, LEAST_PIVOT), "MUMPS pivots");
     }
     if (s->def.symmetric)
         TRY_PETSC(MatCholeskyFactorSymbolic(s->factor, s->matrix, NULL, &info), "analysis");
