@@ -18,8 +18,8 @@
 
 enum { NEWTON_MOST = 40, HALVINGS = 10 };
 enum { SNAP_MOST = 100 }; // corrections of a body let go
-static const double settled =
-    1e-7; // residual over reactions and loads, where rounding allows no less
+// residual over reactions and loads, where rounding allows no less
+static const double settled = 1e-7;
 static const double crushed = 0.3; // volume ratio: a body that folds into itself is not followed
 
 //---- residual ------------------------------------------------------------------------------------

@@ -28,8 +28,8 @@
 #include "springs/vectors.h"
 
 enum { NEWTON_MOST = 25, HALVINGS = 8, FEW_CORNERS = 8 };
-static const double settled =
-    1e-6; // residual over the forces at work, where rounding allows no less
+// residual over the forces at work, where rounding allows no less
+static const double settled = 1e-6;
 static const double forcing = 1e-2; // of the linear solves, over the residual
 static const double slow = 0.2;     // a correction that leaves more wants a new tangent
 static const double most_growth = 2.4;
